@@ -33,6 +33,10 @@
 
 namespace waymark {
 
+inline constexpr double kFirstPoseSigma = 1e-5;  ///< [m, rad]; the first pose defines the map frame
+/// Consecutive keyframes in a group; one of them represents the group in scan factors.
+inline constexpr std::size_t kGroupedKeyframes = 15;
+
 /// Prior standard deviations of the calibration.
 Calibration calibration_sigmas(const EstimatorSetup& setup, const WaymarkConfig& config);
 

@@ -5,8 +5,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kFirstPoseSigma = 1e-5;  // [m, rad]; the first pose defines the map frame
-constexpr double kFound_m = 0.1;          // sigmas of a pose from global localisation
+constexpr double kFound_m = 0.1;  // sigmas of a pose from global localisation
 constexpr double kFound_rad = 0.05;
 constexpr double kRelocated_m = 0.3;  // sigmas of the pose after a relocalisation, or its revert
 constexpr double kRelocated_rad = 0.1;

@@ -9,13 +9,6 @@
 #include <cmath>
 
 namespace waymark {
-namespace {
-
-/// Consecutive keyframes in a group; one of them represents the group in scan factors.
-constexpr std::size_t kGroupedKeyframes = 15;
-
-}  // namespace
-
 WaymarkEstimator::SubmapPrediction WaymarkEstimator::in_submap(const Prediction& prediction,
                                                                const Se2& map_from_submap) {
   const Se2 submap_from_map = map_from_submap.inverse();

@@ -20,6 +20,7 @@ inline constexpr double kOtherPlace_rad = 0.35;
 struct UniquePlaceLimits {
   double min_score{0.0};        ///< least score of the best place
   double runner_up_share{1.0};  ///< ratio of scores, runner-up to best place; above it: ambiguous
+  double min_runner_up{0.0};    ///< a runner-up with a lower score never counts
   double apart_m{0.5};          ///< places nearer to each other than this,
   double apart_rad{0.3};        ///< and turned by less than this, are one
 };
@@ -31,9 +32,9 @@ inline std::optional<SearchMatch> unique_place(const CorrelativeField& field,
                                                const UniquePlaceLimits& limits) {
   const auto best = field.best(points_in_base, guess, window, limits.min_score);
   if (!best) return std::nullopt;
-  const auto runner_up =
-      field.best_apart_from(best->submap_from_base, limits.apart_m, limits.apart_rad,
-                            points_in_base, guess, window, limits.runner_up_share * best->score);
+  const auto runner_up = field.best_apart_from(
+      best->submap_from_base, limits.apart_m, limits.apart_rad, points_in_base, guess, window,
+      std::max(limits.min_runner_up, limits.runner_up_share * best->score));
   return runner_up ? std::nullopt : best;
 }
 

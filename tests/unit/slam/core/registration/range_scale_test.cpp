@@ -40,8 +40,8 @@ Points scaled(Points points, double factor) {
 }
 
 bool is_accepted(RangeScaleMonitor& monitor, const Points& points, const Se2& map_from_base) {
-  return monitor.accepts(kTooLong, points, Eigen::Vector2d::Zero(), map_from_base, kNearby,
-                         RangeNoise{kRangeSigma_m});
+  return monitor.try_accept(kTooLong, points, Eigen::Vector2d::Zero(), map_from_base, kNearby,
+                            RangeNoise{kRangeSigma_m});
 }
 
 TEST(FitRangeScale, FindsTheScaleAtAnInexactPose) {
