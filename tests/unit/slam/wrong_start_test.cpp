@@ -92,7 +92,7 @@ TEST_F(WrongStart, ARefutedStartIsGivenUpAndTheRobotIsFoundByMarkers) {
   const std::int64_t first_marker_us = 15'000'000;
   test::Drive drive = test::drive_through(start_with(0.5 * std::numbers::pi),
                                           messages_with_markers_from(first_marker_us));
-  EXPECT_EQ(unknown_share(drive, 10'000'000, first_marker_us), 1.0);
+  EXPECT_EQ(unknown_share(drive, 10'000'000, first_marker_us - 1), 1.0);
   ASSERT_EQ(drive.estimates.back().has_pose, 1);
   EXPECT_EQ(drive.estimates.back().health, slam_estimate_t::HEALTH_TRACKING);
   std::erase_if(drive.estimates,
