@@ -65,8 +65,8 @@ class WaymarkEstimator final : public Estimator {
 
   struct Prediction {
     Se2 map_from_base{};
-    Eigen::Matrix3d covariance{
-        Eigen::Matrix3d::Zero()};  ///< given the keyframe it moved from; map axes
+    /// Given the keyframe that odometry is measured from; map axes.
+    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   };
 
   /// A prediction in the frame of a submap.

@@ -60,11 +60,7 @@ bool WaymarkEstimator::set_pose(const StartPose& pose) {
 void WaymarkEstimator::add_keyframe_at_commanded_pose(const StartPose& pose) {
   const Se2 map_from_base = map_from_base_at(pose);
   const std::size_t keyframe = graph_.add_keyframe(map_from_base);
-  OdometryFactor disabled;
-  disabled.from = keyframe - 1;
-  disabled.to = keyframe;
-  disabled.is_disabled = true;
-  graph_.add(disabled);
+  graph_.add(OdometryFactor{.from = keyframe - 1, .to = keyframe, .is_disabled = true});
   graph_.add(pose_prior(keyframe, map_from_base, pose.sigma_m, pose.sigma_rad));
   if (loaded_map_) {
     loaded_map_->trust(trust_in(pose));

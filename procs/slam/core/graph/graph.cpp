@@ -171,11 +171,7 @@ void Graph::relocate_newest(const Se2& map_from_base) {
   eliminate(variable);
   insert_variable(variable);
   state_.keyframes.back() = map_from_base;
-  OdometryFactor disabled;
-  disabled.from = newest - 1;
-  disabled.to = newest;
-  disabled.is_disabled = true;
-  add(disabled);
+  add(OdometryFactor{.from = newest - 1, .to = newest, .is_disabled = true});
 }
 
 void Graph::move_since(std::size_t keyframe, std::size_t landmark, const Se2& new_from_old) {

@@ -46,9 +46,7 @@ void Graph::remove_keyframes(const std::vector<RemovedKeyframe>& removed) {
   std::size_t filled = 0;
   for (const RemovedKeyframe& gone : removed) {
     if (gone.keyframe < filled) continue;
-    OdometryFactor gap;
-    gap.from = gap.to = gone.keyframe;
-    gap.is_disabled = true;
+    OdometryFactor gap{.from = gone.keyframe, .to = gone.keyframe, .is_disabled = true};
     while (is_removed_[gap.from])
       --gap.from;
     while (is_removed_[gap.to])

@@ -189,8 +189,9 @@ constexpr double kManyScatter_m = 0.05;
 constexpr int kKeyframes = 20;
 
 /// Match of a scan whose points lie exactly on the mapped ones, with a noisy LiDAR.
-ScanMatch match_without_a_deviation(const Points& points, int keyframes = kKeyframes) {
-  Submap wall{0.25, 1};
+ScanMatch match_without_a_deviation(const Points& points, int keyframes = kKeyframes,
+                                    std::size_t first_keyframe = 0) {
+  Submap wall{0.25, first_keyframe};
   for (int i = 0; i < keyframes; ++i)
     wall.insert(points, {});
   return match_scan(points, wall.ndt(), {}, sigmas(0.02, 0.01), RangeNoise{kManyScatter_m}, {});
@@ -213,6 +214,14 @@ TEST(ScanMatch, WallsObservedFromFewKeyframesAddLessInformation) {
   const double few = match_without_a_deviation(points, 1).observed.information(0, 0);
   const double many = match_without_a_deviation(points).observed.information(0, 0);
   EXPECT_NEAR(few / many, known_share(1) / known_share(kKeyframes), 0.01);
+}
+
+TEST(ScanMatch, AWallThatOnlyTheFirstKeyframeObservedIsNoBetterKnownThanOneOfALaterKeyframe) {
+  Points points;
+  for (double y = -0.5; y <= 0.5; y += 0.02)
+    points.emplace_back(3.0, y);
+  EXPECT_EQ(match_without_a_deviation(points, 1, 0).observed.information(0, 0),
+            match_without_a_deviation(points, 1, 7).observed.information(0, 0));
 }
 
 TEST(ScanMatch, CellsThatLookThinByChanceAddNoInformationBeyondTheRangeNoise) {
