@@ -180,9 +180,7 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   if (is_usable) {
     note_reason(EstimateReason::kScan);
     learn_noise(scan.expected, *matched);
-    if (matched->submap == nullptr) add_map_factor(keyframe, matched->match);
-    used.is_used = matched->submap == nullptr ||
-                   add_scan_factor(keyframe, *matched->submap, matched->match, false);
+    used.is_used = add_match_factor(keyframe, *matched);
     used.observes_all_axes = used.is_used && observes_all_axes;
     used.fits_loaded_map =
         matched->submap == nullptr && used.observes_all_axes && is_in_loaded_map(matched->match);

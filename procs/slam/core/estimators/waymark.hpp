@@ -192,7 +192,7 @@ class WaymarkEstimator final : public Estimator {
   void note_pose_given();
   void use_survey();
   void note_reason(EstimateReason reason);
-  void add_map_factor(std::size_t keyframe, const ScanMatch& match);
+  bool add_match_factor(std::size_t keyframe, const MatchedScan& scan);
   std::vector<KeyframeGroup> keyframe_groups(const ScanMatch& match, bool is_loop) const;
   bool add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);

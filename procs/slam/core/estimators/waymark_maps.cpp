@@ -37,11 +37,6 @@ bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
          match.mapped_share >= kMinMapped;
 }
 
-/// The loaded map is fixed: a match with it is a prior on the pose.
-void WaymarkEstimator::add_map_factor(std::size_t keyframe, const ScanMatch& match) {
-  graph_.add(PosePrior{keyframe, match.map_from_base, root_of(match.observed.information)});
-}
-
 /// A surveyed marker with enough sightings becomes a prior, which is tested again after many more
 /// sightings. After a new frame or a switched prior the whole graph is solved at once; otherwise
 /// only the window, and the other poses follow with the next steps of the whole graph.

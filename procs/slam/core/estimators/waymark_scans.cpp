@@ -9,6 +9,7 @@
 #include <cmath>
 
 namespace waymark {
+
 WaymarkEstimator::SubmapPrediction WaymarkEstimator::in_submap(const Prediction& prediction,
                                                                const Se2& map_from_submap) {
   const Se2 submap_from_map = map_from_submap.inverse();
@@ -87,6 +88,15 @@ std::vector<WaymarkEstimator::KeyframeGroup> WaymarkEstimator::keyframe_groups(
     groups.push_back({reference, share, static_cast<std::size_t>(std::lround(middle / share))});
   }
   return groups;
+}
+
+/// The loaded map is fixed: a match with it is a prior on the pose.
+/// @return whether a factor was added.
+bool WaymarkEstimator::add_match_factor(std::size_t keyframe, const MatchedScan& scan) {
+  const ScanMatch& match = scan.match;
+  if (scan.submap != nullptr) return add_scan_factor(keyframe, *scan.submap, match, false);
+  graph_.add(PosePrior{keyframe, match.map_from_base, root_of(match.observed.information)});
+  return true;
 }
 
 /// @return whether there is a keyframe in the window that the scan can be related to.

@@ -17,9 +17,8 @@ namespace waymark {
 class Submaps {
  public:
   /// @param keyframes_each  largest number of keyframes in a submap.
-  /// @param length_m        length of the path after which a submap ends, since drift deforms
-  /// longer
-  ///                        ones: each half ends at the keyframe that reaches half of it.
+  /// @param length_m        length of the path after which a submap ends, since drift deforms it:
+  ///                        each half ends at the keyframe that reaches half of it.
   Submaps(double cell_spacing_m, int keyframes_each, double length_m)
       : cell_spacing_m_{cell_spacing_m},
         half_keyframes_{static_cast<std::size_t>(std::max(1, keyframes_each / 2))},

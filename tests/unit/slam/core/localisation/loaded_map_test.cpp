@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/localisation/loaded_map.hpp"
 
-#include "slam/core/mapping/insert_scan.hpp"
+#include "support/round_room.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
-#include <numbers>
 
 namespace waymark {
 namespace {
@@ -17,22 +15,13 @@ constexpr MarkerBook::KnownMarkers kNoMarkers{};
 
 Observation view_of_round_wall(double radius_m) {
   Observation observation;
-  for (int i = 0; i < 360; ++i) {
-    const double angle_rad = i * std::numbers::pi / 180.0;
-    AnnotatedBeam annotated;
-    annotated.beam.end_in_base =
-        radius_m * Eigen::Vector2d{std::cos(angle_rad), std::sin(angle_rad)};
-    annotated.beam.range_m = radius_m;
-    observation.beams.push_back(annotated);
-  }
+  observation.beams = test::in_a_round_room(radius_m);
   return observation;
 }
 
 LoadedMap round_room() {
   auto map = std::make_shared<MapSnapshot>();
-  map->grid.frame = GridFrame::centred_on_map_origin(0.05);
-  for (int scan = 0; scan < 20; ++scan)
-    insert_beams(view_of_round_wall(kRoom_m).beams, {}, map->grid);
+  map->grid = test::map_of_a_round_room(kRoom_m);
   return LoadedMap{map};
 }
 

@@ -188,6 +188,14 @@ constexpr double kManyScatter_m = 0.05;
 
 constexpr int kKeyframes = 20;
 
+/// A piece of wall of 1 m, at a right angle to the beam in its middle.
+Points wall_ahead() {
+  Points points;
+  for (double y = -0.5; y <= 0.5; y += 0.02)
+    points.emplace_back(3.0, y);
+  return points;
+}
+
 /// Match of a scan whose points lie exactly on the mapped ones, with a noisy LiDAR.
 ScanMatch match_without_a_deviation(const Points& points, int keyframes = kKeyframes,
                                     std::size_t first_keyframe = 0) {
@@ -208,26 +216,20 @@ double information_of(std::size_t beams) {
 }
 
 TEST(ScanMatch, WallsObservedFromFewKeyframesAddLessInformation) {
-  Points points;
-  for (double y = -0.5; y <= 0.5; y += 0.02)
-    points.emplace_back(3.0, y);
+  const Points points = wall_ahead();
   const double few = match_without_a_deviation(points, 1).observed.information(0, 0);
   const double many = match_without_a_deviation(points).observed.information(0, 0);
   EXPECT_NEAR(few / many, known_share(1) / known_share(kKeyframes), 0.01);
 }
 
 TEST(ScanMatch, AWallThatOnlyTheFirstKeyframeObservedIsNoBetterKnownThanOneOfALaterKeyframe) {
-  Points points;
-  for (double y = -0.5; y <= 0.5; y += 0.02)
-    points.emplace_back(3.0, y);
+  const Points points = wall_ahead();
   EXPECT_EQ(match_without_a_deviation(points, 1, 0).observed.information(0, 0),
             match_without_a_deviation(points, 1, 7).observed.information(0, 0));
 }
 
 TEST(ScanMatch, CellsThatLookThinByChanceAddNoInformationBeyondTheRangeNoise) {
-  Points points;
-  for (double y = -0.5; y <= 0.5; y += 0.02)
-    points.emplace_back(3.0, y);
+  const Points points = wall_ahead();
   const ScanMatch match = match_without_a_deviation(points);
   EXPECT_LE(match.observed.information(0, 0), information_of(points.size()) * 1.03);
   EXPECT_EQ(match.inlier_share, 1.0);
