@@ -53,9 +53,9 @@ void WaymarkEstimator::search_widely(const Observation& observation, ScanAtPredi
   search.since_last_s = scan.since_last_s;
   search.driven_m = (submap_from_last.translation() - search.by_odometry.translation()).norm();
   search.min_score = config_.loops.min_score;
-  search.contradicts_map = [&](const Se2& submap_from_base) {
+  search.misfit = [&](const Se2& submap_from_base) {
     const Se2 map_from_base = matched.map_from_submap * submap_from_base;
-    return fit_in_map(map_.map(), observation.beams, map_from_base).is_contradicted();
+    return fit_in_map(map_.map(), observation.beams, map_from_base).misfit();
   };
   matched.match = searched_widely(matched.match, scan.points, ndt_of(matched),
                                   points_near(matched, expected.submap_from_base,

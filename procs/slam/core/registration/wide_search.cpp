@@ -124,8 +124,7 @@ class PlaceSearch {
 /// odometry must be wrong; otherwise a view of a new place is more likely.
 bool refutes_odometry(const ScanMatch& found, const ScanMatch& plain, const Points& points,
                       const WideSearch& search, const UsualFit& usual) {
-  const bool shows_few_walls = unexplained(found, points) > found.inliers;
-  if (shows_few_walls && search.contradicts_map(found.map_from_base)) return false;
+  if (search.misfit(found.map_from_base) >= search.misfit(plain.map_from_base)) return false;
   if (usual.is_contradicted(plain) && found.inliers > kMuchMore * plain.inliers &&
       usual.is_as_usual_where_mapped(found)) {
     return true;

@@ -19,8 +19,8 @@ struct WideSearch {
   double since_last_s{0.0};  ///< time since the last scan, which widens the window of turns
   double driven_m{0.0};      ///< by odometry since the last scan; widens the windows of positions
   double min_score{0.0};     ///< least SearchMatch::score of a place in a window
-  /// Whether the map, including its free space, contradicts the scan at a pose.
-  std::function<bool(const Se2& map_from_base)> contradicts_map{};
+  /// Share of the beams, 0 to 1, that the map contradicts at a pose, also by its free space.
+  std::function<double(const Se2& map_from_base)> misfit{};
 };
 
 /// Searches windows for a better match than `plain`. The candidate is the match with the most
@@ -32,8 +32,8 @@ struct WideSearch {
 ///   - far from that prediction: the candidate fits as usual, and `plain` is contradicted or leaves
 ///     3 times as many beams unexplained; or `plain` is contradicted, and the candidate has 1.5
 ///     times its inliers and fits as usual where mapped. In addition, no other heading may fit
-///     nearly as well, and the map's free space must not contradict a candidate that explains less
-///     than half of the scan.
+///     nearly as well, and the map, with its free space, must contradict less of the scan at the
+///     candidate than at `plain`.
 /// So `plain` is kept for a view of a new place, where a correct match has few inliers.
 ///
 /// @param points     ends of beams, base frame.
