@@ -2,6 +2,7 @@
 #include "placement/drive.hpp"
 
 #include "common/geometry/squared.hpp"
+#include "slam/core/registration/points_in_map.hpp"
 
 #include <Eigen/Geometry>
 

@@ -30,8 +30,11 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   if (scan.submap == nullptr) return std::nullopt;
   scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
   const SubmapPrediction guess = in_submap(prediction, scan.map_from_submap);
-  scan.match = match_scan(points, scan.submap->ndt(), guess.submap_from_base, guess.covariance,
-                          range_noise_, config_.scan, scan.submap->coarse_ndt());
+  const ScanMatch plain =
+      match_scan(points, scan.submap->ndt(), guess.submap_from_base, guess.covariance, range_noise_,
+                 config_.scan, scan.submap->coarse_ndt());
+  scan.match = with_settled_walls(plain, points, scan.submap->ndt(), guess.covariance, range_noise_,
+                                  config_.scan);
   return scan;
 }
 

@@ -4,6 +4,7 @@
 #include "common/geometry/median.hpp"
 #include "common/geometry/principal_axes.hpp"
 #include "common/geometry/squared.hpp"
+#include "slam/core/registration/points_in_map.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <unordered_map>
 
 namespace waymark {
 namespace {
@@ -26,13 +26,9 @@ constexpr double kPartsBlur_m = 0.06;  // less than the distance of parts; above
 constexpr double kReachOfCell = 0.5;   // of a level's spacing; a more certain guess skips the level
 constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
-// Largest number of beams in one cell that count as independent: the error of the cell's mean is
-// common to all of them, and so is the displacement if they end on a person.
-constexpr double kIndependentBeams = 4.0;
-// The information of a beam has the factor n / (n + kFewKeyframes), where n is the number of
-// keyframes from the first to the last that observed its cell: the error of the cell's mean falls
-// with n, and a person stays at one place for a few keyframes only.
-constexpr double kFewKeyframes = 3.0;
+// Settled walls: cells that this many keyframes have seen. As many scans were compared with them,
+// and a cell's error is common to all of these, so each counts as a part of an observation only.
+constexpr int kSettledKeyframes = 10;
 constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak direction
 
 // Added to the guess's sigmas in the descent. The guess chooses among optima some centimetres
@@ -48,135 +44,10 @@ const Eigen::Vector3d kGuessAdded{0.2, 0.2, 0.1};  // [m, m, rad]
 constexpr int kWellSeen = 20;      // least number of points in a cell
 constexpr double kSquareOn = 0.5;  // least cosine of a beam's angle of incidence
 
-/// A quadratic model of the cost about a pose: cost + gradient' d + d' information d / 2.
-struct Quadratic {
-  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
-  Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
-};
-
-/// Residuals of one beam that ends in an NDT cell: across its wall, and along if it is no line.
-struct BeamTerm {
-  Eigen::Vector2d normal{Eigen::Vector2d::Zero()};
-  double across_m{0.0};
-  double along_m{0.0};
-  double across_weight{0.0};  ///< inverse variances, times the robust weight
-  double along_weight{0.0};
-  double robust{0.0};  ///< Geman-McClure weight, 0..1
-};
-
-/// @param ray  from the base to the point, map's axes; approximates the beam, which begins at the
-///             LiDAR.
-BeamTerm compare(const NdtCell& cell, const Eigen::Vector2d& point, const Eigen::Vector2d& ray,
-                 double point_variance_m2, double blur_m2, const ScanMatchConfig& config) {
-  BeamTerm term;
-  const Eigen::Vector2d distance = point - cell.mean;
-  term.normal = cell.normal;
-  term.across_m = term.normal.dot(distance);
-  // A cell may be thin by chance: the variance is at least the range noise along its normal.
-  const double by_range_m2 = point_variance_m2 * squared(term.normal.dot(ray)) / ray.squaredNorm();
-  term.across_weight =
-      1.0 / (std::max(cell.across_m2, by_range_m2) + squared(config.roughness_m) + blur_m2);
-  double chi2 = term.across_weight * squared(term.across_m);
-  if (!cell.is_line) {
-    term.along_m = term.normal.x() * distance.y() - term.normal.y() * distance.x();
-    term.along_weight = 1.0 / (cell.along_m2 + blur_m2);
-    chi2 += term.along_weight * squared(term.along_m);
-  }
-  const double kernel2 = squared(config.kernel_sigmas);
-  term.robust = squared(kernel2 / (kernel2 + chi2));
-  term.across_weight *= term.robust;
-  term.along_weight *= term.robust;
-  return term;
-}
-
-double known_share(const NdtCell& cell) {
-  if (cell.last_keyframe == kNoKeyframe) return 1.0;
-  const int seen_from = cell.last_keyframe - cell.first_keyframe + 1;
-  return seen_from / (seen_from + kFewKeyframes);
-}
-
-/// A scan in a map, with the cells of its points cached: most stay the same from step to step.
-class PointsInMap {
- public:
-  /// @param uses_parts  of thick cells, if the map is divided.
-  PointsInMap(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2,
-              bool uses_parts)
-      : points_{points},
-        map_{map},
-        point_variance_m2_{point_variance_m2},
-        uses_parts_{uses_parts && map.is_divided()},
-        places_(points.size()) {}
-
-  Quadratic quadratic_about(const Se2& pose, double blur_m2, const ScanMatchConfig& config) {
-    Quadratic sum;
-    const Eigen::Matrix2d rotation = pose.rotation();
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      find_place(i, rotation * points_[i] + pose.translation());
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const NdtCell* cell = places_[i].cell;
-      if (cell == nullptr) continue;
-      const Eigen::Vector2d lever = rotation * points_[i];
-      const Eigen::Vector2d there = lever + pose.translation();
-      const BeamTerm term = compare(*cell, there, lever, point_variance_m2_, blur_m2, config);
-      const double share = independent_share(*places_[i].beams) * known_share(*cell);
-      add(term.normal, lever, term.across_m, share * term.across_weight, sum);
-      if (term.along_weight > 0.0) {
-        const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
-        add(along, lever, term.along_m, share * term.along_weight, sum);
-      }
-    }
-    sum.information.bottomLeftCorner<1, 2>() = sum.information.topRightCorner<2, 1>().transpose();
-    sum.information(1, 0) = sum.information(0, 1);
-    return sum;
-  }
-
- private:
-  struct Place {
-    NdtMap::Key key{0};
-    const NdtCell* cell{nullptr};
-    int* beams{nullptr};  ///< number of the scan's beams in that cell, in all of its parts
-    bool is_known{false};
-  };
-
-  void find_place(std::size_t point, const Eigen::Vector2d& there) {
-    Place& place = places_[point];
-    const NdtMap::Key key = uses_parts_ ? map_.part_at(there) : map_.key_at(there);
-    if (place.is_known && place.key == key) return;
-    if (place.cell != nullptr) --*place.beams;
-    const NdtCell* cell =
-        uses_parts_ ? map_.at_part(key, point_variance_m2_) : map_.at(key, point_variance_m2_);
-    place = {key, cell, nullptr, true};
-    if (place.cell == nullptr) return;
-    place.beams = &beams_on_[uses_parts_ ? NdtMap::cell_of_part(key) : key];
-    ++*place.beams;
-  }
-
-  /// Adds a residual along `direction`, with d(residual)/d(x, y, theta) = (direction, by_turn).
-  static void add(const Eigen::Vector2d& direction, const Eigen::Vector2d& lever, double distance_m,
-                  double weight, Quadratic& sum) {
-    const double by_turn = lever.x() * direction.y() - lever.y() * direction.x();
-    const double wx = weight * direction.x();
-    const double wy = weight * direction.y();
-    sum.information(0, 0) += wx * direction.x();
-    sum.information(0, 1) += wx * direction.y();
-    sum.information(1, 1) += wy * direction.y();
-    sum.information(0, 2) += wx * by_turn;
-    sum.information(1, 2) += wy * by_turn;
-    sum.information(2, 2) += weight * by_turn * by_turn;
-    sum.gradient += weight * distance_m * Eigen::Vector3d{direction.x(), direction.y(), by_turn};
-  }
-
-  std::span<const Eigen::Vector2d> points_;
-  const NdtMap& map_;
-  double point_variance_m2_;
-  bool uses_parts_;
-  std::vector<Place> places_;
-  std::unordered_map<NdtMap::Key, int> beams_on_{};  ///< by cell; never iterated over
-};
-
 void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2,
                const ScanMatchConfig& config, ScanMatch& match) {
   int mapped = 0;
+  match.inliers = 0;
   std::map<int, double> shares;
   std::vector<double> off_range_m;
   const Eigen::Matrix2d rotation = match.map_from_base.rotation();
@@ -193,7 +64,7 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
     if (term.robust < kInlierWeight) continue;
     ++match.inliers;
     if (cell->last_keyframe == kNoKeyframe) continue;
-    const int keyframes = cell->last_keyframe - cell->first_keyframe + 1;
+    const int keyframes = num_keyframes(*cell);
     for (int k = cell->first_keyframe; k <= cell->last_keyframe; ++k)
       shares[k] += 1.0 / keyframes;
   }
@@ -275,10 +146,6 @@ double beam_end_sigma_m(std::span<const Eigen::Vector2d> points_in_base,
 
 }  // namespace
 
-double independent_share(int beams) {
-  return std::min(1.0, kIndependentBeams / beams);
-}
-
 bool ObservedAxes::is_along_weak(const Eigen::Vector2d& shift) const {
   return is_degenerate && std::abs(weak_direction.dot(shift)) >= kAlongWeak * shift.norm();
 }
@@ -340,6 +207,37 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
   match.map_from_base = moved_by(
       match.map_from_base,
       -(match.observed.information + nearly_none(guess_covariance)).ldlt().solve(gradient));
+  summarise(points_in_base, map, point_variance_m2, config, match);
+  return match;
+}
+
+ScanMatch with_settled_walls(ScanMatch match, std::span<const Eigen::Vector2d> points_in_base,
+                             const NdtMap& map, const Eigen::Matrix3d& guess_covariance,
+                             const RangeNoise& noise, const ScanMatchConfig& config) {
+  if (!match.observed.is_degenerate) return match;
+  const double point_variance_m2 = noise.variance_m2();
+  const Eigen::Vector2d weak = match.observed.weak_direction;
+  const double guess_m2 =
+      squared(kDescentAdded.x()) + weak.dot(guess_covariance.topLeftCorner<2, 2>() * weak);
+  PointsInMap points{points_in_base, map, point_variance_m2, true};
+  const auto moved_along = [&](double shift_m) {
+    return moved_by(match.map_from_base, {shift_m * weak.x(), shift_m * weak.y(), 0.0});
+  };
+  double shift_m = 0.0;
+  PointsInMap::AlongLine model;
+  for (int i = 0; i < kFinalSteps; ++i) {
+    model = points.along_line_about(moved_along(shift_m), weak, kSettledKeyframes, config);
+    const double step_m =
+        -(model.gradient + shift_m / guess_m2) / (model.information + 1.0 / guess_m2);
+    shift_m += step_m;
+    if (std::abs(step_m) < kConverged) break;
+  }
+  const double information = model.information / kSettledKeyframes;
+  Eigen::Matrix2d observed = match.observed.information.topLeftCorner<2, 2>();
+  if (information <= config.weak_share / squared(kSettledKeyframes) * observed.trace())
+    return match;
+  match.map_from_base = moved_along(shift_m);
+  match.observed.information.topLeftCorner<2, 2>() += information * weak * weak.transpose();
   summarise(points_in_base, map, point_variance_m2, config, match);
   return match;
 }

@@ -41,10 +41,6 @@ struct ObservedAxes {
   void drop_information_along(const Eigen::Vector2d& direction);
 };
 
-/// Factor on the information of each beam, given the number of the scan's beams that end in the
-/// same cell: 1 for a few, less for many, since their errors are correlated.
-double independent_share(int beams);
-
 /// Removes the information that noise of the walls' normals leaks into an unobserved direction
 /// (Zhang, Kaess, Singh 2016). Frame: that of the information, origin at the robot.
 /// @param weak_share  share of the strongest direction's information below which a direction is
@@ -83,5 +79,13 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
                      const Se2& guess, const Eigen::Matrix3d& guess_covariance,
                      const RangeNoise& noise, const ScanMatchConfig& config,
                      std::span<const NdtMap> coarse = {});
+
+/// A degenerate match, moved along its weak direction to where walls that many keyframes have seen
+/// fit best, with a little information there: unlike a person beside the robot, such walls stand
+/// still, and door frames far away add up over many scans. Unchanged if they tell hardly anything.
+/// The match stays degenerate.
+ScanMatch with_settled_walls(ScanMatch match, std::span<const Eigen::Vector2d> points_in_base,
+                             const NdtMap& map, const Eigen::Matrix3d& guess_covariance,
+                             const RangeNoise& noise, const ScanMatchConfig& config);
 
 }  // namespace waymark

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Submaps of normal distributions, and where scans fit into them.
 #include "common/random/random.hpp"
+#include "slam/core/registration/points_in_map.hpp"
 #include "slam/core/registration/scan_match.hpp"
 #include "slam/core/registration/submap.hpp"
 
@@ -62,8 +63,8 @@ Points room_from(const Se2& map_from_base, std::uint64_t seed) {
   return view.points;
 }
 
-template <class View>
-Submap submap_of(View view, double step_m = 0.1) {
+template <class ViewFrom>
+Submap submap_of(ViewFrom view, double step_m = 0.1) {
   Submap submap{0.25, 0};
   for (std::uint64_t k = 0; k < 20; ++k) {
     const Se2 pose{step_m * static_cast<double>(k), 0.0, 0.0};
@@ -182,6 +183,59 @@ TEST(ScanMatch, APersonWalkingAheadDoesNotMakeTheAxisObservable) {
   const ScanMatch match = match_scan(companion_from(truth, 99), corridor.ndt(), truth,
                                      sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
   EXPECT_TRUE(match.observed.is_degenerate);
+}
+
+/// A corridor with a door frame that stands out from one wall by 6 cm.
+Points frame_from(const Se2& map_from_base, std::uint64_t seed) {
+  NoisyView view{map_from_base, seed};
+  view.points = corridor_from(map_from_base, seed);
+  for (double y = 0.94; y < 1.0; y += 0.02)
+    view.add(2.5, y);
+  return view.points;
+}
+
+using View = Points (*)(const Se2& map_from_base, std::uint64_t seed);
+
+/// Of a scan 2 cm behind its guess.
+ScanMatch with_settled_walls_of(const Submap& corridor, View view) {
+  const Points scan = view({1.0, 0.0, 0.0}, 99);
+  const Eigen::Matrix3d covariance = sigmas(0.02, 0.01);
+  const ScanMatch plain =
+      match_scan(scan, corridor.ndt(), {1.02, 0.0, 0.0}, covariance, RangeNoise{kSigma_m}, {});
+  EXPECT_TRUE(plain.observed.is_degenerate);
+  EXPECT_NEAR(plain.map_from_base.x(), 1.02, 0.001);
+  return with_settled_walls(plain, scan, corridor.ndt(), covariance, RangeNoise{kSigma_m}, {});
+}
+
+/// Its information along its weak direction, relative to that across.
+double share_along_weak(const ScanMatch& match) {
+  const Eigen::Matrix2d information = match.observed.information.topLeftCorner<2, 2>();
+  const Eigen::Vector2d& weak = match.observed.weak_direction;
+  return weak.dot(information * weak) / information.trace();
+}
+
+TEST(SettledWalls, MoveADegenerateMatchAlongTheAxisWithLittleInformation) {
+  const ScanMatch match = with_settled_walls_of(submap_of(frame_from), frame_from);
+  EXPECT_TRUE(match.observed.is_degenerate);
+  EXPECT_NEAR(match.map_from_base.x(), 1.0, 0.012);
+  EXPECT_GT(share_along_weak(match), 1e-5);
+  EXPECT_LT(share_along_weak(match), 1e-3);
+}
+
+TEST(SettledWalls, CellsThatFewKeyframesHaveSeenTellNothingAlongTheAxis) {
+  Submap corridor{0.25, 0};
+  for (std::uint64_t k = 0; k < 9; ++k)
+    corridor.insert(frame_from({0.1 * static_cast<double>(k), 0.0, 0.0}, k + 1),
+                    {0.1 * static_cast<double>(k), 0.0, 0.0});
+  const ScanMatch match = with_settled_walls_of(corridor, frame_from);
+  EXPECT_NEAR(match.map_from_base.x(), 1.02, 0.001);
+  EXPECT_LT(share_along_weak(match), 1e-12);
+}
+
+TEST(SettledWalls, ABareCorridorTellsNothingAlongItsAxis) {
+  const View bare = corridor_from;
+  const ScanMatch match = with_settled_walls_of(submap_of(bare), bare);
+  EXPECT_LT(share_along_weak(match), 1e-12);
 }
 
 constexpr double kManyScatter_m = 0.05;
