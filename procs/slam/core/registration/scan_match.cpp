@@ -233,9 +233,8 @@ ScanMatch with_settled_walls(ScanMatch match, std::span<const Eigen::Vector2d> p
     if (std::abs(step_m) < kConverged) break;
   }
   const double information = model.information / kSettledKeyframes;
-  Eigen::Matrix2d observed = match.observed.information.topLeftCorner<2, 2>();
-  if (information <= config.weak_share / squared(kSettledKeyframes) * observed.trace())
-    return match;
+  const double across = match.observed.information.topLeftCorner<2, 2>().trace();
+  if (information <= config.weak_share / squared(kSettledKeyframes) * across) return match;
   match.map_from_base = moved_along(shift_m);
   match.observed.information.topLeftCorner<2, 2>() += information * weak * weak.transpose();
   summarise(points_in_base, map, point_variance_m2, config, match);
