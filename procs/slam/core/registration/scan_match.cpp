@@ -232,9 +232,10 @@ ScanMatch with_settled_walls(ScanMatch match, std::span<const Eigen::Vector2d> p
     shift_m += step_m;
     if (std::abs(step_m) < kConverged) break;
   }
-  const double information = model.information / kSettledKeyframes;
+  // Less is noise of the walls' normals, of which the mean over many keyframes has less.
   const double across = match.observed.information.topLeftCorner<2, 2>().trace();
-  if (information <= config.weak_share / squared(kSettledKeyframes) * across) return match;
+  if (model.information <= config.weak_share / kSettledKeyframes * across) return match;
+  const double information = model.information / kSettledKeyframes;
   match.map_from_base = moved_along(shift_m);
   match.observed.information.topLeftCorner<2, 2>() += information * weak * weak.transpose();
   summarise(points_in_base, map, point_variance_m2, config, match);

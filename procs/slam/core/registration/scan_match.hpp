@@ -81,9 +81,9 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
                      std::span<const NdtMap> coarse = {});
 
 /// Moves a degenerate match along its weak direction to where walls that many keyframes have seen
-/// fit best, in between that and the guess, with a little information there: unlike a person beside
-/// the robot, such walls stand still, and door frames far away add up over many scans. Unchanged if
-/// they tell hardly anything. The match stays degenerate.
+/// fit best, in between that and the guess, with a little information there: unlike somebody who
+/// walks beside the robot, such walls stand still, and door frames far away add up over many scans.
+/// Unchanged if they tell hardly anything. The match stays degenerate.
 /// @param match             from match_scan() with the other arguments.
 /// @param guess_covariance  as given to match_scan(): how far the guess is believed.
 ScanMatch with_settled_walls(ScanMatch match, std::span<const Eigen::Vector2d> points_in_base,
