@@ -18,9 +18,8 @@ constexpr double kIndependentBeams = 4.0;
 constexpr double kFewKeyframes = 3.0;
 
 double known_share(const NdtCell& cell) {
-  if (cell.last_keyframe == kNoKeyframe) return 1.0;
   const int seen_from = num_keyframes(cell);
-  return seen_from / (seen_from + kFewKeyframes);
+  return seen_from == 0 ? 1.0 : seen_from / (seen_from + kFewKeyframes);
 }
 
 /// Adds a residual along `direction`, with d(residual)/d(x, y, theta) = (direction, by_turn).
@@ -79,24 +78,34 @@ PointsInMap::PointsInMap(std::span<const Eigen::Vector2d> points, const NdtMap& 
       uses_parts_{uses_parts && map.is_divided()},
       places_(points.size()) {}
 
+/// Calls use(term, lever, share) for each point that ends in a cell with at least `min_keyframes`:
+/// its residuals, the point relative to the base in map's axes, and the share that it counts.
+template <class Use>
+void PointsInMap::for_each_term(const Se2& pose, double blur_m2, int min_keyframes,
+                                const ScanMatchConfig& config, const Use& use) {
+  const Eigen::Matrix2d rotation = pose.rotation();
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    find_place(i, rotation * points_[i] + pose.translation());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const NdtCell* cell = places_[i].cell;
+    if (cell == nullptr || num_keyframes(*cell) < min_keyframes) continue;
+    const Eigen::Vector2d lever = rotation * points_[i];
+    const Eigen::Vector2d there = lever + pose.translation();
+    const double share = independent_share(*places_[i].beams) * known_share(*cell);
+    use(compare(*cell, there, lever, point_variance_m2_, blur_m2, config), lever, share);
+  }
+}
+
 Quadratic PointsInMap::quadratic_about(const Se2& pose, double blur_m2,
                                        const ScanMatchConfig& config) {
   Quadratic sum;
-  const Eigen::Matrix2d rotation = pose.rotation();
-  find_places(pose);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const NdtCell* cell = places_[i].cell;
-    if (cell == nullptr) continue;
-    const Eigen::Vector2d lever = rotation * points_[i];
-    const Eigen::Vector2d there = lever + pose.translation();
-    const BeamTerm term = compare(*cell, there, lever, point_variance_m2_, blur_m2, config);
-    const double share = independent_share(*places_[i].beams) * known_share(*cell);
-    add(term.normal, lever, term.across_m, share * term.across_weight, sum);
-    if (term.along_weight > 0.0) {
-      const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
-      add(along, lever, term.along_m, share * term.along_weight, sum);
-    }
-  }
+  for_each_term(pose, blur_m2, 0, config,
+                [&](const BeamTerm& term, const Eigen::Vector2d& lever, double share) {
+                  add(term.normal, lever, term.across_m, share * term.across_weight, sum);
+                  if (term.along_weight <= 0.0) return;
+                  const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
+                  add(along, lever, term.along_m, share * term.along_weight, sum);
+                });
   sum.information.bottomLeftCorner<1, 2>() = sum.information.topRightCorner<2, 1>().transpose();
   sum.information(1, 0) = sum.information(0, 1);
   return sum;
@@ -107,29 +116,17 @@ PointsInMap::AlongLine PointsInMap::along_line_about(const Se2& pose,
                                                      int min_keyframes,
                                                      const ScanMatchConfig& config) {
   AlongLine sum;
-  const Eigen::Matrix2d rotation = pose.rotation();
-  find_places(pose);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const NdtCell* cell = places_[i].cell;
-    if (cell == nullptr || num_keyframes(*cell) < min_keyframes) continue;
-    const Eigen::Vector2d lever = rotation * points_[i];
-    const BeamTerm term =
-        compare(*cell, lever + pose.translation(), lever, point_variance_m2_, 0.0, config);
-    const double share = independent_share(*places_[i].beams) * known_share(*cell);
-    const double across = term.normal.dot(direction);
-    const double along = term.normal.x() * direction.y() - term.normal.y() * direction.x();
-    sum.information +=
-        share * (term.across_weight * squared(across) + term.along_weight * squared(along));
-    sum.gradient += share * (term.across_weight * across * term.across_m +
-                             term.along_weight * along * term.along_m);
-  }
+  for_each_term(
+      pose, 0.0, min_keyframes, config,
+      [&](const BeamTerm& term, const Eigen::Vector2d&, double share) {
+        const double across = term.normal.dot(direction);
+        const double along = term.normal.x() * direction.y() - term.normal.y() * direction.x();
+        sum.information +=
+            share * (term.across_weight * squared(across) + term.along_weight * squared(along));
+        sum.gradient += share * (term.across_weight * across * term.across_m +
+                                 term.along_weight * along * term.along_m);
+      });
   return sum;
-}
-
-void PointsInMap::find_places(const Se2& pose) {
-  const Eigen::Matrix2d rotation = pose.rotation();
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    find_place(i, rotation * points_[i] + pose.translation());
 }
 
 void PointsInMap::find_place(std::size_t point, const Eigen::Vector2d& there) {

@@ -71,7 +71,9 @@ class PointsInMap {
     bool is_known{false};
   };
 
-  void find_places(const Se2& pose);
+  template <class Use>
+  void for_each_term(const Se2& pose, double blur_m2, int min_keyframes,
+                     const ScanMatchConfig& config, const Use& use);
   void find_place(std::size_t point, const Eigen::Vector2d& there);
 
   std::span<const Eigen::Vector2d> points_;

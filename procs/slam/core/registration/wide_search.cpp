@@ -124,14 +124,14 @@ class PlaceSearch {
 /// odometry must be wrong; otherwise a view of a new place is more likely.
 bool refutes_odometry(const ScanMatch& found, const ScanMatch& plain, const Points& points,
                       const WideSearch& search, const UsualFit& usual) {
-  if (search.misfit(found.map_from_base) >= search.misfit(plain.map_from_base)) return false;
-  if (usual.is_contradicted(plain) && found.inliers > kMuchMore * plain.inliers &&
-      usual.is_as_usual_where_mapped(found)) {
-    return true;
-  }
-  return !usual.is_worse_than_usual(found) &&
-         (usual.is_contradicted(plain) ||
-          unexplained(plain, points) > kLeavesFarMore * unexplained(found, points));
+  const bool has_much_more = usual.is_contradicted(plain) &&
+                             found.inliers > kMuchMore * plain.inliers &&
+                             usual.is_as_usual_where_mapped(found);
+  const bool explains_more =
+      has_much_more || (!usual.is_worse_than_usual(found) &&
+                        (usual.is_contradicted(plain) ||
+                         unexplained(plain, points) > kLeavesFarMore * unexplained(found, points)));
+  return explains_more && search.misfit(found.map_from_base) < search.misfit(plain.map_from_base);
 }
 
 }  // namespace
