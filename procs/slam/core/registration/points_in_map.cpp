@@ -78,11 +78,9 @@ PointsInMap::PointsInMap(std::span<const Eigen::Vector2d> points, const NdtMap& 
       uses_parts_{uses_parts && map.is_divided()},
       places_(points.size()) {}
 
-/// Calls use(term, lever, share) for each point that ends in a cell with at least `min_keyframes`:
-/// its residuals, the point relative to the base in map's axes, and the share that it counts.
-template <class Use>
-void PointsInMap::for_each_term(const Se2& pose, double blur_m2, int min_keyframes,
-                                const ScanMatchConfig& config, const Use& use) {
+Quadratic PointsInMap::quadratic_about(const Se2& pose, double blur_m2,
+                                       const ScanMatchConfig& config, int min_keyframes) {
+  Quadratic sum;
   const Eigen::Matrix2d rotation = pose.rotation();
   for (std::size_t i = 0; i < points_.size(); ++i)
     find_place(i, rotation * points_[i] + pose.translation());
@@ -91,41 +89,15 @@ void PointsInMap::for_each_term(const Se2& pose, double blur_m2, int min_keyfram
     if (cell == nullptr || num_keyframes(*cell) < min_keyframes) continue;
     const Eigen::Vector2d lever = rotation * points_[i];
     const Eigen::Vector2d there = lever + pose.translation();
+    const BeamTerm term = compare(*cell, there, lever, point_variance_m2_, blur_m2, config);
     const double share = independent_share(*places_[i].beams) * known_share(*cell);
-    use(compare(*cell, there, lever, point_variance_m2_, blur_m2, config), lever, share);
+    add(term.normal, lever, term.across_m, share * term.across_weight, sum);
+    if (term.along_weight <= 0.0) continue;
+    const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
+    add(along, lever, term.along_m, share * term.along_weight, sum);
   }
-}
-
-Quadratic PointsInMap::quadratic_about(const Se2& pose, double blur_m2,
-                                       const ScanMatchConfig& config) {
-  Quadratic sum;
-  for_each_term(pose, blur_m2, 0, config,
-                [&](const BeamTerm& term, const Eigen::Vector2d& lever, double share) {
-                  add(term.normal, lever, term.across_m, share * term.across_weight, sum);
-                  if (term.along_weight <= 0.0) return;
-                  const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
-                  add(along, lever, term.along_m, share * term.along_weight, sum);
-                });
   sum.information.bottomLeftCorner<1, 2>() = sum.information.topRightCorner<2, 1>().transpose();
   sum.information(1, 0) = sum.information(0, 1);
-  return sum;
-}
-
-PointsInMap::AlongLine PointsInMap::along_line_about(const Se2& pose,
-                                                     const Eigen::Vector2d& direction,
-                                                     int min_keyframes,
-                                                     const ScanMatchConfig& config) {
-  AlongLine sum;
-  for_each_term(
-      pose, 0.0, min_keyframes, config,
-      [&](const BeamTerm& term, const Eigen::Vector2d&, double share) {
-        const double across = term.normal.dot(direction);
-        const double along = term.normal.x() * direction.y() - term.normal.y() * direction.x();
-        sum.information +=
-            share * (term.across_weight * squared(across) + term.along_weight * squared(along));
-        sum.gradient += share * (term.across_weight * across * term.across_m +
-                                 term.along_weight * along * term.along_m);
-      });
   return sum;
 }
 

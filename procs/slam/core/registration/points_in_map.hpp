@@ -51,17 +51,9 @@ class PointsInMap {
   PointsInMap(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2,
               bool uses_parts);
 
-  Quadratic quadratic_about(const Se2& pose, double blur_m2, const ScanMatchConfig& config);
-
-  /// A quadratic model of the cost along a line: cost + gradient d + information d^2 / 2.
-  struct AlongLine {
-    double information{0.0};
-    double gradient{0.0};
-  };
-
-  /// The model along `direction` (unit), of the cells with at least `min_keyframes`.
-  AlongLine along_line_about(const Se2& pose, const Eigen::Vector2d& direction, int min_keyframes,
-                             const ScanMatchConfig& config);
+  /// @param min_keyframes  cells that fewer keyframes have observed are left out.
+  Quadratic quadratic_about(const Se2& pose, double blur_m2, const ScanMatchConfig& config,
+                            int min_keyframes = 0);
 
  private:
   struct Place {
@@ -71,9 +63,6 @@ class PointsInMap {
     bool is_known{false};
   };
 
-  template <class Use>
-  void for_each_term(const Se2& pose, double blur_m2, int min_keyframes,
-                     const ScanMatchConfig& config, const Use& use);
   void find_place(std::size_t point, const Eigen::Vector2d& there);
 
   std::span<const Eigen::Vector2d> points_;

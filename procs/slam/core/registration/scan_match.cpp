@@ -26,8 +26,9 @@ constexpr double kPartsBlur_m = 0.06;  // less than the distance of parts; above
 constexpr double kReachOfCell = 0.5;   // of a level's spacing; a more certain guess skips the level
 constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
-// Settled walls: cells that this many keyframes have seen. As many scans were compared with them,
-// and a cell's error is common to all of these, so each counts as a part of an observation only.
+// Settled walls: cells that this many keyframes have seen, or of a loaded map. As many scans were
+// compared with them, and a cell's error is common to all of these, so each counts as a part of an
+// observation only.
 constexpr int kSettledKeyframes = 10;
 constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak direction
 
@@ -48,6 +49,7 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
                const ScanMatchConfig& config, ScanMatch& match) {
   int mapped = 0;
   match.inliers = 0;
+  match.settled_inliers = 0;
   std::map<int, double> shares;
   std::vector<double> off_range_m;
   const Eigen::Matrix2d rotation = match.map_from_base.rotation();
@@ -63,8 +65,9 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
       off_range_m.push_back(std::abs(term.across_m) / square_on);
     if (term.robust < kInlierWeight) continue;
     ++match.inliers;
-    if (cell->last_keyframe == kNoKeyframe) continue;
     const int keyframes = num_keyframes(*cell);
+    if (keyframes == 0 || keyframes >= kSettledKeyframes) ++match.settled_inliers;
+    if (keyframes == 0) continue;
     for (int k = cell->first_keyframe; k <= cell->last_keyframe; ++k)
       shares[k] += 1.0 / keyframes;
   }
@@ -217,25 +220,28 @@ ScanMatch with_settled_walls(ScanMatch match, std::span<const Eigen::Vector2d> p
   if (!match.observed.is_degenerate) return match;
   const double point_variance_m2 = noise.variance_m2();
   const Eigen::Vector2d weak = match.observed.weak_direction;
+  const Eigen::Vector3d along{weak.x(), weak.y(), 0.0};
   const double guess_m2 =
       squared(kDescentAdded.x()) + weak.dot(guess_covariance.topLeftCorner<2, 2>() * weak);
   PointsInMap points{points_in_base, map, point_variance_m2, true};
   const auto moved_along = [&](double shift_m) {
-    return moved_by(match.map_from_base, {shift_m * weak.x(), shift_m * weak.y(), 0.0});
+    return moved_by(match.map_from_base, shift_m * along);
   };
   double shift_m = 0.0;
-  PointsInMap::AlongLine model;
+  double settled = 0.0;  // information of settled walls
   for (int i = 0; i < kFinalSteps; ++i) {
-    model = points.along_line_about(moved_along(shift_m), weak, kSettledKeyframes, config);
+    const Quadratic model =
+        points.quadratic_about(moved_along(shift_m), 0.0, config, kSettledKeyframes);
+    settled = along.dot(model.information * along);
     const double step_m =
-        -(model.gradient + shift_m / guess_m2) / (model.information + 1.0 / guess_m2);
+        -(along.dot(model.gradient) + shift_m / guess_m2) / (settled + 1.0 / guess_m2);
     shift_m += step_m;
     if (std::abs(step_m) < kConverged) break;
   }
   // Less is noise of the walls' normals, of which the mean over many keyframes has less.
   const double across = match.observed.information.topLeftCorner<2, 2>().trace();
-  if (model.information <= config.weak_share / kSettledKeyframes * across) return match;
-  const double information = model.information / kSettledKeyframes;
+  if (settled <= config.weak_share / kSettledKeyframes * across) return match;
+  const double information = settled / kSettledKeyframes;
   match.map_from_base = moved_along(shift_m);
   match.observed.information.topLeftCorner<2, 2>() += information * weak * weak.transpose();
   summarise(points_in_base, map, point_variance_m2, config, match);

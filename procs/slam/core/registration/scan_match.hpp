@@ -55,6 +55,7 @@ struct ScanMatch {
   double mapped_share{0.0};     ///< num_mapped / all beams
   int num_mapped{0};            ///< beams that ended in a cell with a distribution
   int inliers{0};               ///< mapped beams with a robust weight of at least a quarter
+  int settled_inliers{0};       ///< of those, the ones on walls that many keyframes observed
   double range_scatter_m{0.0};  ///< standard deviation of ranges about the walls they end on
   int num_scattered{0};         ///< beams that range_scatter_m was computed from
   /// For keyframes first_keyframe, first_keyframe + 1, ...: their share in the cells of the
@@ -80,7 +81,7 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
                      const RangeNoise& noise, const ScanMatchConfig& config,
                      std::span<const NdtMap> coarse = {});
 
-/// Moves a degenerate match along its weak direction to where walls that many keyframes have seen
+/// Moves a degenerate match along its weak direction to where walls that many keyframes observed
 /// fit best, in between that and the guess, with a little information there: unlike somebody who
 /// walks beside the robot, such walls stand still, and door frames far away add up over many scans.
 /// Unchanged if they tell hardly anything. The match stays degenerate.

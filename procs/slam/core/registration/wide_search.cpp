@@ -131,6 +131,13 @@ bool refutes_odometry(const ScanMatch& found, const ScanMatch& plain, const Poin
       has_much_more || (!usual.is_worse_than_usual(found) &&
                         (usual.is_contradicted(plain) ||
                          unexplained(plain, points) > kLeavesFarMore * unexplained(found, points)));
+  // Along a corridor, people in the map may fit people who are elsewhere now.
+  const Eigen::Vector2d shift =
+      found.map_from_base.translation() - plain.map_from_base.translation();
+  if (plain.observed.is_along_weak(shift) &&
+      found.settled_inliers <= kClearlyMore * plain.settled_inliers) {
+    return false;
+  }
   return explains_more && search.misfit(found.map_from_base) < search.misfit(plain.map_from_base);
 }
 

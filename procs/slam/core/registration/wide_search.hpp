@@ -32,8 +32,9 @@ struct WideSearch {
 ///   - far from that prediction: the candidate fits as usual, and `plain` is contradicted or leaves
 ///     3 times as many beams unexplained; or `plain` is contradicted, and the candidate has 1.5
 ///     times its inliers and fits as usual where mapped. In addition, no other heading may fit
-///     nearly as well, and the map, with its free space, must contradict less of the scan at the
-///     candidate than at `plain`.
+///     nearly as well; the map, with its free space, must contradict less of the scan at the
+///     candidate than at `plain`; and along the weak direction of a degenerate `plain`, the
+///     candidate must have 5 % more inliers on settled walls, too.
 /// So `plain` is kept for a view of a new place, where a correct match has few inliers.
 ///
 /// @param points     ends of beams, base frame.

@@ -278,6 +278,28 @@ TEST(WideSearch, AMatchFarFromOdometryThatContradictsTheMapNoLessIsRejected) {
   }
 }
 
+/// A scan in a corridor fits completely 0.4 m further on, where something stood for all keyframes,
+/// or somebody for a few.
+TEST(WideSearch, AlongACorridorOnlyWallsThatManyKeyframesHaveSeenRefuteOdometry) {
+  const Points cabinet = together(end_wall(7.0, 1.0), end_wall(7.2, 1.0));
+  for (const int keyframes_with_it : {20, 5}) {
+    Submap submap{0.25, 0};
+    for (int i = 0; i < 20; ++i)
+      submap.insert(i < keyframes_with_it ? together(walls(0.0, 14.0), cabinet) : walls(0.0, 14.0),
+                    {});
+    const Se2 truth{6.4, 0.3, 0.0};
+    const Points seen = seen_from(truth, together(walls(4.4, 8.4), cabinet));
+    const Se2 guess{6.0, 0.3, 0.0};
+    WideSearch search = around(guess);
+    search.odometry_covariance = squared(0.02) * Eigen::Matrix3d::Identity();
+    const Searched found = look_for(submap, seen, guess, search);
+    EXPECT_TRUE(found.plain.observed.is_degenerate);
+    const Se2& expected = keyframes_with_it == 20 ? truth : guess;
+    EXPECT_LT(pose_difference(found.best.map_from_base, expected).norm(), 0.02)
+        << keyframes_with_it;
+  }
+}
+
 TEST(WideSearch, AViewOfANewPlaceKeepsThePlainMatch) {
   // Half of the scan lies behind what is mapped. Nearer to the middle more of it would lie on
   // walls, but the new end of the room would still be nowhere.
