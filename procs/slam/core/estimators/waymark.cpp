@@ -3,7 +3,6 @@
 
 #include "common/geometry/squared.hpp"
 #include "slam/core/localisation/map_fit.hpp"
-#include "slam/core/mapping/moving_beams.hpp"
 
 #include <Eigen/LU>
 
@@ -62,12 +61,10 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
     : setup_{setup},
       config_{config},
       graph_{graph_noise(setup, config), calibration_sigmas(setup, config)},
-      range_noise_{setup.range_sigma_m},
+      registration_{config, setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
       thinning_{config.keyframes_per_place, 2 * config.submap_keyframes},
       submaps_{config.scan.cell_spacing_m, config.submap_keyframes, config.submap_length_m},
-      usual_fit_{config.scan.min_inliers, config.min_inlier_share},
-      range_scale_{config.scan.cell_spacing_m},
       map_{setup.grid, base_map_of(setup)},
       noise_of_old_factors_{graph_.odometry_noise()},
       start_{setup.start},
@@ -88,7 +85,8 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   ScanAtPrediction scan = match_at_prediction(measured);
   statistics_.beams += static_cast<std::int64_t>(measured.beams.size());
   statistics_.beams_moving += static_cast<std::int64_t>(scan.beams_moving);
-  const std::optional<Observation> corrected = with_right_scale(measured, scan);
+  const std::optional<Observation> corrected =
+      registration_.with_right_scale(measured, maps_for_scan(), scan);
   const Observation& observation = corrected ? *corrected : measured;
   bool is_keyframe = commanded_pose_ || odometry_check_.is_refused() ||
                      is_keyframe_due(observation) || is_contradicted_by(observation);
@@ -104,7 +102,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
     add_keyframe(observation, scan);
     since_insertion_m_ = observation.motion.distance_m;
   } else {
-    if (scan.matched) note_fit(scan.matched->match);
+    if (scan.matched) registration_.note_fit(scan.matched->match);
     since_insertion_m_ += observation.motion.distance_m;
     if (between.observes_all_axes || sees_known_markers(observation))
       unmeasured_motion_.note_observed();
@@ -129,13 +127,18 @@ void WaymarkEstimator::note_reason(EstimateReason reason) {
   reason_ = std::max(reason_, reason);
 }
 
-Points WaymarkEstimator::without_moving(const Points& points, const Prediction& searched) const {
-  return waymark::without_moving(points, map_.map(), searched.map_from_base, searched.covariance);
+MapsForScan WaymarkEstimator::maps_for_scan() const {
+  MapsForScan maps{map_.map()};
+  maps.submap = submaps_.current();
+  if (maps.submap != nullptr)
+    maps.map_from_submap = graph_.state().keyframes[maps.submap->first_keyframe()];
+  maps.loaded = loaded_map_ ? &*loaded_map_ : nullptr;
+  maps.is_fixed = is_map_fixed();
+  return maps;
 }
 
 /// The first scan and the one after a commanded pose get neither a prediction nor a match.
-WaymarkEstimator::ScanAtPrediction WaymarkEstimator::match_at_prediction(
-    const Observation& observation) const {
+ScanAtPrediction WaymarkEstimator::match_at_prediction(const Observation& observation) const {
   ScanAtPrediction scan{points_of(observation)};
   if (graph_.state().keyframes.empty() || commanded_pose_) return scan;
   scan.since_last_s = observation.elapsed_s;
@@ -143,14 +146,9 @@ WaymarkEstimator::ScanAtPrediction WaymarkEstimator::match_at_prediction(
   scan.searched = scan.expected;
   if (unmeasured_motion_.is_standing())
     scan.searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
-  const std::size_t all = scan.points.size();
-  scan.points = without_moving(scan.points, scan.searched);
-  scan.beams_moving = all - scan.points.size();
-  scan.matched = matched(scan.points, scan.searched);
-  // A scan that contradicts the map may fit at another pose; its range scale is tested only if it
-  // fits none.
-  if (scan.matched && usual_fit_.is_contradicted(scan.matched->match))
-    search_widely(observation, scan);
+  scan.map_from_last = graph_.state().keyframes.back() * newest_from_last_scan_;
+  scan.steps_without_odometry = odometry_check_.steps_without_odometry();
+  registration_.match(observation, maps_for_scan(), scan);
   return scan;
 }
 
@@ -158,33 +156,32 @@ WaymarkEstimator::ScanAtPrediction WaymarkEstimator::match_at_prediction(
 WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
     const Observation& observation, std::span<const MarkerMeasurement> measurements,
     ScanAtPrediction& scan) {
-  if (scan.matched) search_widely(observation, scan);
+  if (scan.matched) registration_.search_widely(observation, maps_for_scan(), scan);
   const auto& matched = scan.matched;
   KeyframeScan used;
-  used.is_refuted = matched && usual_fit_.is_refuted(matched->match);
-  const bool is_usable = matched && !used.is_refuted && matched->match.is_usable(config_.scan);
+  used.is_refuted = matched && registration_.is_refuted(matched->match);
+  const bool is_usable = matched && registration_.is_usable(matched->match);
   const bool observes_all_axes = is_usable && !matched->match.observed.is_degenerate;
   // The noise of standing odometry is so small that the solver would keep the predicted pose: the
   // keyframe is initialised at the match instead.
   const bool is_moved = is_usable && unmeasured_motion_.is_standing();
   const std::size_t keyframe =
-      graph_.add_keyframe(is_moved ? matched->map_from_submap * matched->match.map_from_base
-                                   : scan.expected.map_from_base);
+      graph_.add_keyframe(is_moved ? matched->map_from_base() : scan.expected.map_from_base);
   // A scan that observes all axes measures slips, so odometry keeps its full weight here: with a
   // lower weight, long trajectories become worse, even where sigma along the path is large.
   hidden_slips_ = observes_all_axes ? 0.0 : hidden_slips(measurements);
   add_odometry_factor(keyframe);
   if (matched && matched->match.num_mapped >= config_.scan.min_inliers)
     inlier_share_ = matched->match.inlier_share;
-  if (matched) note_fit(matched->match);
+  if (matched) registration_.note_fit(matched->match);
   if (is_usable) {
     note_reason(EstimateReason::kScan);
     learn_noise(scan.expected, *matched);
     used.is_used = add_match_factor(keyframe, *matched);
     used.observes_all_axes = used.is_used && observes_all_axes;
-    used.fits_loaded_map =
-        matched->submap == nullptr && used.observes_all_axes && is_in_loaded_map(matched->match);
-    usual_fit_.note_keyframe(matched->match);
+    used.fits_loaded_map = matched->submap == nullptr && used.observes_all_axes &&
+                           registration_.is_in_loaded_map(matched->match);
+    registration_.note_keyframe(matched->match);
   }
   unobserved_m_ = used.observes_all_axes ? 0.0 : unobserved_m_ + motion_.distance_m;
   return used;
@@ -279,7 +276,8 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPredic
 void WaymarkEstimator::map_keyframe(const Observation& observation, const Points& points) {
   const Se2& map_from_base = graph_.state().keyframes.back();
   submaps_.rebuild_deformed(graph_.state().keyframes);
-  submaps_.add_keyframe(points, graph_.state().keyframes, range_noise_.variance_m2());
+  submaps_.add_keyframe(points, graph_.state().keyframes,
+                        registration_.range_noise().variance_m2());
   map_.add(observation, map_from_base);
   map_.redraw_some(poses_of(graph_));
 }
@@ -294,7 +292,7 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
   if (is_map_fixed() || !is_confirmed() || since_insertion_m_ < config_.insert_distance_m ||
-      usual_fit_.is_worse_than_usual(match) || is_pose_suspicious()) {
+      registration_.usual_fit().is_worse_than_usual(match) || is_pose_suspicious()) {
     return;
   }
   since_insertion_m_ = 0.0;
@@ -306,11 +304,9 @@ WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(
   const Prediction& expected = scan.expected;
   BetweenKeyframes between{expected.map_from_base, expected.covariance};
   const auto& matched = scan.matched;
-  if (!matched || !matched->match.is_usable(config_.scan) || usual_fit_.is_refuted(matched->match))
-    return between;
-  const Se2 found = matched->map_from_submap * matched->match.map_from_base;
-  const Eigen::Matrix3d information =
-      in_axes(matched->map_from_submap.rotation(), matched->match.observed.information);
+  if (!matched || !registration_.is_usable(matched->match)) return between;
+  const Se2 found = matched->map_from_base();
+  const Eigen::Matrix3d information = matched->information();
   const Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
   between.covariance = (expected.covariance.inverse() + information).inverse();
   const Eigen::Vector3d pull = information * off;
@@ -354,7 +350,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   estimate.weak_axis_source = unmeasured_motion_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing
                               : markers_known_                        ? WeakAxisSource::kMarkers
                                                                       : WeakAxisSource::kOdometry;
-  estimate.ranges_wrong = is_rescaled_;
+  estimate.ranges_wrong = registration_.is_rescaled();
   estimate.start_refuted = loaded_map_ && loaded_map_->is_pose_refuted();
   const bool is_other_building = loaded_map_ && loaded_map_->is_of_another_building();
   const bool is_lost = carried_ || is_pose_suspicious() ||
@@ -364,24 +360,6 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                                  estimate.weak_axis_source == WeakAxisSource::kMarkers;
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost, observes_all_axes);
   return estimate;
-}
-
-std::vector<Landmark> WaymarkEstimator::landmarks() const {
-  return landmarks_of(graph_);
-}
-
-std::vector<Landmark> WaymarkEstimator::landmarks_of(const Graph& graph) const {
-  std::vector<Landmark> known;
-  for (std::size_t i = 0; i < book_.entries().size(); ++i) {
-    if (book_.is_retired(i)) continue;
-    known.push_back(book_.entries()[i]);
-    known.back().map_from_marker = graph.state().landmarks[i];
-    known.back().covariance = graph.landmark_covariance(i);
-  }
-  std::stable_sort(known.begin(), known.end(), [](const Landmark& a, const Landmark& b) {
-    return std::pair{a.id, a.instance} < std::pair{b.id, b.instance};
-  });
-  return known;
 }
 
 }  // namespace waymark

@@ -6,6 +6,7 @@
 #include "slam/core/association/survey.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/estimators/scan_poses.hpp"
+#include "slam/core/estimators/scan_registration.hpp"
 #include "slam/core/estimators/waymark_config.hpp"
 #include "slam/core/graph/drift.hpp"
 #include "slam/core/graph/graph.hpp"
@@ -21,9 +22,7 @@
 #include "slam/core/odometry/odometry_noise_learner.hpp"
 #include "slam/core/odometry/standstill.hpp"
 #include "slam/core/odometry/unmeasured_motion.hpp"
-#include "slam/core/registration/range_scale.hpp"
 #include "slam/core/registration/submaps.hpp"
-#include "slam/core/registration/usual_fit.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -63,48 +62,11 @@ class WaymarkEstimator final : public Estimator {
   /// Keyframes of the window in a fixed map; few are enough, as the map gives each a prior.
   static constexpr std::size_t kFixedMapWindow = 16;
 
-  struct Prediction {
-    Se2 map_from_base{};
-    /// Given the keyframe that odometry is measured from; map axes.
-    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
-  };
-
-  /// A prediction in the frame of a submap.
-  struct SubmapPrediction {
-    Se2 submap_from_base{};
-    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< submap axes
-  };
-
-  /// A scan registered in a submap or in the loaded map.
-  struct MatchedScan {
-    ScanMatch match{};              ///< submap frame
-    const Submap* submap{nullptr};  ///< null: the loaded map, in its own frame
-    Se2 map_from_submap{};
-  };
-
   /// Neighbouring keyframes that saw the walls of a match.
   struct KeyframeGroup {
     std::size_t reference{0};  ///< keyframe that represents the group in the graph
     double share{0.0};         ///< of the inliers
     std::size_t middle{0};     ///< mean keyframe, weighted by inliers
-  };
-
-  /// A scan, matched at the predicted pose.
-  struct ScanAtPrediction {
-    Points points{};  ///< without beams that end on moving objects
-    Prediction expected{};
-    Prediction searched{};  ///< `expected`, with a larger covariance if odometry may be stuck
-    std::optional<MatchedScan> matched{};
-    double since_last_s{0.0};         ///< time since the last scan
-    bool was_searched_widely{false};  ///< search_widely() has been called
-    std::size_t beams_moving{0};      ///< number of beams excluded from the points
-  };
-
-  struct RescaledScan {
-    double range_error{0.0};  ///< RangeScale::error of the ranges as measured
-    Observation observation{};
-    Points points{};
-    MatchedScan matched{};
   };
 
   /// How the scan of a keyframe was used.
@@ -149,21 +111,12 @@ class WaymarkEstimator final : public Estimator {
     return is_map_fixed() ? std::min(all, kFixedMapWindow) : all;
   }
 
-  const NdtMap& ndt_of(const MatchedScan& scan) const;
-  Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
-  bool is_in_loaded_map(const ScanMatch& match) const;
-
   bool is_confirmed() const { return !loaded_map_ || loaded_map_->is_confirmed(); }
 
   bool is_pose_suspicious() const {
     return verdict_ == RelocalisationMonitor::Verdict::kSuspicious || relocalisation_.is_doubtful();
   }
 
-  std::optional<RescaledScan> rescaled(const Observation& observation,
-                                       const ScanAtPrediction& scan) const;
-  std::optional<Observation> with_right_scale(const Observation& observation,
-                                              ScanAtPrediction& scan);
-  void note_fit(const ScanMatch& match);
   void follow_odometry(const Observation& observation);
   double hidden_slips(std::span<const MarkerMeasurement> measurements) const;
   void add_odometry_factor(std::size_t keyframe);
@@ -175,10 +128,7 @@ class WaymarkEstimator final : public Estimator {
   bool is_contradicted_by(const Observation& observation) const;
   bool sees_known_markers(const Observation& observation) const;
   Prediction prediction() const;
-  std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
-  static SubmapPrediction in_submap(const Prediction& prediction, const Se2& map_from_submap);
-  void search_widely(const Observation& observation, ScanAtPrediction& scan) const;
-  Points without_moving(const Points& points, const Prediction& searched) const;
+  MapsForScan maps_for_scan() const;
   ScanAtPrediction match_at_prediction(const Observation& observation) const;
   void add_keyframe(const Observation& observation, ScanAtPrediction& scan);
   KeyframeScan add_predicted_keyframe(const Observation& observation,
@@ -234,7 +184,7 @@ class WaymarkEstimator final : public Estimator {
   /// Since when nothing shows that nobody has carried the robot: odometry stood still, or jumped.
   std::optional<Timestamp> may_be_carried_since_{};
   std::optional<Carried> carried_{};
-  RangeNoise range_noise_;
+  ScanRegistration registration_;
   OdometryNoiseLearner noise_learner_{};
   DriftCovariance drift_{};
   DriftCovariance unmatched_drift_{};  ///< the part of drift_ from keyframes without a scan factor
@@ -244,8 +194,6 @@ class WaymarkEstimator final : public Estimator {
   SolveSchedule solve_schedule_{};
   mutable std::optional<Graph> solved_{};  ///< see solved()
   Submaps submaps_;
-  UsualFit usual_fit_;
-  RangeScaleMonitor range_scale_;
   Motion motion_{};            ///< since the keyframe `moved_from_`
   std::size_t moved_from_{0};  ///< the newest keyframe, unless odometry was stuck
   std::optional<Standstill> standstill_{};
@@ -277,9 +225,7 @@ class WaymarkEstimator final : public Estimator {
   bool markers_known_{false};
   EstimateReason reason_{EstimateReason::kOdometry};
 
-  // Of the newest scan:
-  bool is_rescaled_{false};
-  bool is_observed_{false};  ///< see ScanPose
+  bool is_observed_{false};  ///< of the newest scan; see ScanPose
 };
 
 }  // namespace waymark

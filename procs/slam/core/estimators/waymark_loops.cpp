@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole graph: loops, the trajectory, and the map drawn along it.
+// Loops, and steps of the whole graph.
 #include "common/geometry/information.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
@@ -49,8 +49,9 @@ void WaymarkEstimator::close_loops(const Points& points) {
     search.covariance_since = [this](std::size_t keyframe) {
       return graph_.covariance_since(keyframe);
     };
-    for (const LoopFinder::Found& found : loop_finder_.find(
-             newest(), points, search, submaps_.finished(), graph_.state(), range_noise_)) {
+    for (const LoopFinder::Found& found :
+         loop_finder_.find(newest(), points, search, submaps_.finished(), graph_.state(),
+                           registration_.range_noise())) {
       const Submap* submap = submaps_.find(found.loop.submap);
       if (submap == nullptr || graph_.is_removed(found.keyframe)) continue;  // forgotten meanwhile
       add_scan_factor(found.keyframe, *submap, found.loop.match, true);
@@ -87,26 +88,6 @@ void WaymarkEstimator::remove_redundant_keyframes() {
   if (removable.empty()) return;
   graph_.remove_keyframes(removable);
   submaps_.forget([this](std::size_t keyframe) { return graph_.is_removed(keyframe); });
-}
-
-/// The whole graph at its optimum; valid until the next update.
-const Graph& WaymarkEstimator::solved() const {
-  if (!solved_) {
-    solved_.emplace(graph_);
-    solved_->optimise_all(SolveSchedule::kSteps);
-  }
-  return *solved_;
-}
-
-std::vector<TimedPose> WaymarkEstimator::trajectory() const {
-  if (is_map_fixed()) return {};
-  return scan_poses_.along(solved().state().keyframes);
-}
-
-GridMap WaymarkEstimator::redrawn_map() const {
-  if (is_map_fixed()) return map();
-  const Graph& graph = solved();
-  return map_.drawn_along(poses_of(graph));
 }
 
 }  // namespace waymark

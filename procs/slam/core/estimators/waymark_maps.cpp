@@ -9,7 +9,6 @@ namespace waymark {
 namespace {
 
 constexpr int kSurveySteps = 12;
-constexpr double kMinMapped = 0.6;  // share of mapped beams, for a scan to be in the map
 
 }  // namespace
 
@@ -20,21 +19,6 @@ void WaymarkEstimator::load(const std::shared_ptr<const MapSnapshot>& map) {
     book_.add_known(landmark);
   }
   if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(map, config_.scan);
-}
-
-const NdtMap& WaymarkEstimator::ndt_of(const MatchedScan& scan) const {
-  return scan.submap != nullptr ? scan.submap->ndt() : loaded_map_->snapshot().walls;
-}
-
-Points WaymarkEstimator::points_near(const MatchedScan& scan, const Se2& submap_from_base,
-                                     double within_m) const {
-  if (scan.submap != nullptr) return scan.submap->points();
-  return loaded_map_->wall_points_near(submap_from_base.translation(), within_m);
-}
-
-bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
-  return match.is_usable(config_.scan) && !usual_fit_.is_refuted(match) &&
-         match.mapped_share >= kMinMapped;
 }
 
 /// A surveyed marker with enough sightings becomes a prior, which is tested again after many more
@@ -94,7 +78,8 @@ std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
       snapshot.walls.add(map_from_base * annotated.beam.end_in_base, kNoKeyframe);
   }
   snapshot.grid = map_.drawn_along(poses_of(graph));
-  snapshot.walls = walls_to_save(snapshot.walls, snapshot.grid, range_noise_.variance_m2());
+  snapshot.walls =
+      walls_to_save(snapshot.walls, snapshot.grid, registration_.range_noise().variance_m2());
   for (Landmark landmark : landmarks_of(graph))
     if (!landmark.is_missed()) snapshot.landmarks.push_back(landmark);
   snapshot.graph = pose_graph_of(graph);

@@ -45,8 +45,8 @@ bool WaymarkEstimator::sees_known_markers(const Observation& observation) const 
 
 std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& observation) const {
   return measure_markers(observation,
-                         {std::sqrt(range_noise_.variance_m2()), setup_.camera.base_from_camera,
-                          setup_.sighting_noise},
+                         {std::sqrt(registration_.range_noise().variance_m2()),
+                          setup_.camera.base_from_camera, setup_.sighting_noise},
                          graph_.odometry_noise(), config_.markers);
 }
 

@@ -85,7 +85,7 @@ bool WaymarkEstimator::has_moved_without_odometry(const Se2& map_from_base) cons
          std::abs(moved.z()) >= config_.keyframe_turn_rad;
 }
 
-WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
+Prediction WaymarkEstimator::prediction() const {
   const CorrectedMotion moved = with_slips(
       corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise()),
       motion_.distance_m, hidden_slips_, graph_.noise().learnt_odometry);
@@ -146,7 +146,7 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
   }
   const OdometryNoise& described = graph_.noise().odometry;
   const ScanMatch& match = scan.match;
-  const Se2 found = scan.map_from_submap * match.map_from_base;
+  const Se2 found = scan.map_from_base();
   const Eigen::Matrix2d to_base = found.rotation().transpose();
   Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
   off.head<2>() = (to_base * off.head<2>()).eval();

@@ -84,7 +84,7 @@ void WaymarkEstimator::note_pose_given() {
 /// @return whether the robot's pose in the loaded map is known now.
 bool WaymarkEstimator::try_global_localisation(const Observation& observation) {
   const auto found = place_finder_->update(observation.motion, observation, measured(observation),
-                                           setup_.camera, range_noise_);
+                                           setup_.camera, registration_.range_noise());
   if (!found) return false;
   start_ = {StartKind::kPose, found->x(), found->y(), found->theta(), kFound_m, kFound_rad};
   place_finder_.reset();
@@ -134,7 +134,7 @@ void WaymarkEstimator::note_scan_after_standstill(const ScanAtPrediction& scan,
     carried_->driven_m += motion_.distance_m;
     if (fits_walls_before_carry(scan.points)) note_pose_known();
   } else if (may_be_carried_since_ && contradicts) {
-    carried_ = Carried{newest(), graph_.state().landmarks.size(), ndt_of(*scan.matched),
+    carried_ = Carried{newest(), graph_.state().landmarks.size(), scan.matched->ndt(),
                        scan.matched->map_from_submap};
     begin_submaps_anew();
   } else if (used.observes_all_axes && !scan.was_searched_widely) {
@@ -147,8 +147,9 @@ bool WaymarkEstimator::fits_walls_before_carry(const Points& points) const {
       {graph_.state().keyframes.back(), graph_.covariance_of({VariableKind::kKeyframe, newest()})},
       carried_->map_from_walls);
   const ScanMatch match = match_scan(points, carried_->walls, guess.submap_from_base,
-                                     guess.covariance, range_noise_, config_.scan);
-  return usual_fit_.is_nearly_usual(match) && usual_fit_.is_as_usual_where_mapped(match);
+                                     guess.covariance, registration_.range_noise(), config_.scan);
+  const UsualFit& usual = registration_.usual_fit();
+  return usual.is_nearly_usual(match) && usual.is_as_usual_where_mapped(match);
 }
 
 void WaymarkEstimator::note_pose_known() {

@@ -1,70 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the graph estimator uses scans.
+// Scan factors of the graph estimator.
 #include "common/geometry/information.hpp"
 #include "slam/core/estimators/waymark.hpp"
-#include "slam/core/localisation/map_fit.hpp"
-#include "slam/core/registration/wide_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace waymark {
-
-WaymarkEstimator::SubmapPrediction WaymarkEstimator::in_submap(const Prediction& prediction,
-                                                               const Se2& map_from_submap) {
-  const Se2 submap_from_map = map_from_submap.inverse();
-  return {submap_from_map * prediction.map_from_base,
-          in_axes(submap_from_map.rotation(), prediction.covariance)};
-}
-
-std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
-    const Points& points, const Prediction& prediction) const {
-  if (points.empty()) return std::nullopt;
-  MatchedScan scan;
-  if (loaded_map_) {
-    scan.match = loaded_map_->match(points, prediction.map_from_base, prediction.covariance,
-                                    range_noise_, config_.scan);
-    if (is_map_fixed() || is_in_loaded_map(scan.match)) return scan;
-  }
-  scan.submap = submaps_.current();
-  if (scan.submap == nullptr) return std::nullopt;
-  scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
-  const SubmapPrediction guess = in_submap(prediction, scan.map_from_submap);
-  const ScanMatch plain =
-      match_scan(points, scan.submap->ndt(), guess.submap_from_base, guess.covariance, range_noise_,
-                 config_.scan, scan.submap->coarse_ndt());
-  scan.match = with_settled_walls(plain, points, scan.submap->ndt(), guess.covariance, range_noise_,
-                                  config_.scan);
-  return scan;
-}
-
-/// If a scan fits worse than usual, the predicted pose may be outside the matcher's basin of
-/// convergence. Then wide windows are searched around that pose and around poses that do not use
-/// odometry, which are wrong by the motion since the last scan at most. Needs a matched scan.
-void WaymarkEstimator::search_widely(const Observation& observation, ScanAtPrediction& scan) const {
-  MatchedScan& matched = *scan.matched;
-  if (scan.was_searched_widely || !usual_fit_.is_worse_than_usual(matched.match)) return;
-  scan.was_searched_widely = true;
-  const Se2 submap_from_last = matched.map_from_submap.inverse() *
-                               (graph_.state().keyframes.back() * newest_from_last_scan_);
-  const SubmapPrediction expected = in_submap(scan.expected, matched.map_from_submap);
-  WideSearch search;
-  for (const Se2& step : odometry_check_.steps_without_odometry())
-    search.without_odometry.push_back(submap_from_last * step);
-  search.by_odometry = expected.submap_from_base;
-  search.odometry_covariance = expected.covariance;
-  search.since_last_s = scan.since_last_s;
-  search.driven_m = (submap_from_last.translation() - search.by_odometry.translation()).norm();
-  search.min_score = config_.loops.min_score;
-  search.misfit = [&](const Se2& submap_from_base) {
-    const Se2 map_from_base = matched.map_from_submap * submap_from_base;
-    return fit_in_map(map_.map(), observation.beams, map_from_base).misfit();
-  };
-  matched.match = searched_widely(matched.match, scan.points, ndt_of(matched),
-                                  points_near(matched, expected.submap_from_base,
-                                              wide_search_reach_m(scan.points, search.driven_m)),
-                                  search, usual_fit_, range_noise_, config_.scan);
-}
 
 /// Divides the inliers of a match among the keyframes that observed their walls. Neighbouring
 /// keyframes form a group, represented by one of them: where possible the same one for every scan,
