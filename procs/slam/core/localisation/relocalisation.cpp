@@ -56,7 +56,8 @@ RelocalisationMonitor::Verdict RelocalisationMonitor::update(const Se2& map_from
                                                              const View& view) {
   propagate(motion);
   if (may_be_carried) is_certain_ = false;
-  if (is_lookalike_place(hints)) return revert();
+  note_unexpected(hints);
+  if (is_lookalike_place()) return revert();
   count_misses(is_doubtful_ ? *abandoned_ : map_from_base, view);
   if (is_doubtful_) {
     if (const auto decided = settle_doubt(map_from_base, hints, view)) return *decided;
@@ -160,12 +161,15 @@ void RelocalisationMonitor::propagate(const Motion& motion) {
   }
 }
 
-bool RelocalisationMonitor::is_lookalike_place(std::span<const PoseHint> hints) {
-  if (!abandoned_) return false;
+void RelocalisationMonitor::note_unexpected(std::span<const PoseHint> hints) {
+  if (!abandoned_) return;
   for (const PoseHint& hint : hints)
     if (hint.kind == PoseHint::Kind::kNew && hint.is_in_known_place)
       unexpected_ids_.insert(hint.id);
-  return unexpected_ids_.size() >= kMarkersNeeded;
+}
+
+bool RelocalisationMonitor::is_lookalike_place() const {
+  return abandoned_ && unexpected_ids_.size() >= kMarkersNeeded;
 }
 
 void RelocalisationMonitor::support_alternative(const PoseHint& hint) {

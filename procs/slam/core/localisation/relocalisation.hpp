@@ -94,7 +94,8 @@ class RelocalisationMonitor {
   void drop_alternative();
   void support_alternative(const PoseHint& hint);
   int num_sightings() const;
-  bool is_lookalike_place(std::span<const PoseHint> hints);
+  void note_unexpected(std::span<const PoseHint> hints);
+  bool is_lookalike_place() const;
   Verdict relocate(const Se2& map_from_base, bool is_doubtful);
   Verdict revert();
   std::optional<Verdict> settle_doubt(const Se2& map_from_base, std::span<const PoseHint> hints,

@@ -82,27 +82,27 @@ class PlaceSearch {
     return best;
   }
 
-  /// Whether the scan fits nearly as well at another heading or, if `found` is degenerate, at
-  /// another position that is not along the weak direction; never if `plain` is there. Otherwise
+  /// None if the scan fits nearly as well at another heading or, if `found` is degenerate, at
+  /// another position that is not along the weak direction; `found` if `plain` is there. Otherwise
   /// another position with the same heading takes from `found` the information along the line
   /// between both.
-  bool is_ambiguous(ScanMatch& found, const ScanMatch& plain) const {
+  std::optional<ScanMatch> if_unambiguous(ScanMatch found, const ScanMatch& plain) const {
     const Se2& pose = found.map_from_base;
     const SearchWindow around{2.0 * window_.half_width_m,
                               std::min(std::numbers::pi, 2.0 * window_.half_turn_rad)};
     const auto other = field_.best_apart_from(pose, kOtherPlace_m, kOtherPlace_rad, beams_, pose,
                                               around, kNearlyAsWell * field_.score(beams_, pose));
-    if (!other) return false;
+    if (!other) return found;
     const ScanMatch there = match_at(*other);
-    if (there.inliers < kNearlyAsWell * found.inliers) return false;
-    if (is_same_place(pose_difference(there.map_from_base, plain.map_from_base))) return false;
+    if (there.inliers < kNearlyAsWell * found.inliers) return found;
+    if (is_same_place(pose_difference(there.map_from_base, plain.map_from_base))) return found;
     const Eigen::Vector3d apart = pose_difference(there.map_from_base, pose);
-    if (std::abs(apart.z()) > kSameHeading_rad) return true;
+    if (std::abs(apart.z()) > kSameHeading_rad) return std::nullopt;
     const Eigen::Vector2d shift = apart.head<2>();
-    if (is_same_place(apart) || found.observed.is_along_weak(shift)) return false;
-    if (found.observed.is_degenerate) return true;
+    if (is_same_place(apart) || found.observed.is_along_weak(shift)) return found;
+    if (found.observed.is_degenerate) return std::nullopt;
     found.observed.drop_information_along(shift.normalized());
-    return false;
+    return found;
   }
 
  private:
@@ -134,11 +134,10 @@ bool refutes_odometry(const ScanMatch& found, const ScanMatch& plain, const Poin
   // Along a corridor, people in the map may fit people who are elsewhere now.
   const Eigen::Vector2d shift =
       found.map_from_base.translation() - plain.map_from_base.translation();
-  if (plain.observed.is_along_weak(shift) &&
-      found.settled_inliers <= kClearlyMore * plain.settled_inliers) {
-    return false;
-  }
-  return explains_more && search.misfit(found.map_from_base) < search.misfit(plain.map_from_base);
+  const bool is_unsettled = plain.observed.is_along_weak(shift) &&
+                            found.settled_inliers <= kClearlyMore * plain.settled_inliers;
+  return explains_more && !is_unsettled &&
+         search.misfit(found.map_from_base) < search.misfit(plain.map_from_base);
 }
 
 }  // namespace
@@ -154,12 +153,14 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
   const double plain_sigmas = sigmas_from_odometry(plain, search);
   const bool is_far = sigmas_from_odometry(*found, search) >
                       std::max(kContradictedSigmas, kFarFarther * plain_sigmas);
+  if (is_far) {
+    if (!refutes_odometry(*found, plain, points, search, usual)) return plain;
+    return places.if_unambiguous(*found, plain).value_or(plain);
+  }
   const bool fits_better =
-      is_far ? refutes_odometry(*found, plain, points, search, usual) &&
-                   !places.is_ambiguous(*found, plain)
-             : usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
-                   (usual.is_nearly_usual(*found) && (found->inliers > kFarMore * plain.inliers ||
-                                                      plain_sigmas > kContradictedSigmas));
+      usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
+      (usual.is_nearly_usual(*found) &&
+       (found->inliers > kFarMore * plain.inliers || plain_sigmas > kContradictedSigmas));
   return fits_better ? *found : plain;
 }
 
