@@ -3,18 +3,19 @@
 # Runs one estimator and the viewer on a recorded log, and before them the detector if the log has images (CAMERA)
 # but no MARKERS.
 #
-# usage: deploy/replay.sh LOG --estimator NAME [options]
-#   --config FILE    configuration of slam; may be given several times, later files win
-#   --set KEY=VALUE  the same for one value; may be given several times
-#   --load-map FILE  map of an earlier run (NAME.map.lcm); needs --mode
-#   --mode NAME      what for: localise (it stays as it is) or extend (what is new is added)
-#   --start NAME     where in it the robot is: origin (default), pose (slam.start_pose), last, anywhere
-#   --save-map FILE  write the map there at the end
-#   --skip-s S       leave out so many seconds of the log's beginning
-#   --until-s S      read so many seconds from its beginning, and no more
-#   --row NAME       folder for the results inside DIR (default: the estimator's name)
-#   --robot FILE     sensors and their mounting (default: robot.toml beside the log)
-#   --out DIR        (default: the log's folder)
+# usage: deploy/replay.sh LOG [options]
+#   --estimator NAME  odometry, gmapping, marker_matching or waymark (default: what waymark-slam's configuration says)
+#   --config FILE     configuration of slam; may be given several times, later files win
+#   --set KEY=VALUE   the same for one value; may be given several times
+#   --load-map FILE   map of an earlier run (NAME.map.lcm); needs --mode
+#   --mode NAME       what for: localise (it stays as it is) or extend (what is new is added)
+#   --start NAME      where in it the robot is: origin (default), pose (slam.start_pose), last, anywhere
+#   --save-map FILE   write the map there at the end
+#   --skip-s S        leave out so many seconds of the log's beginning
+#   --until-s S       read so many seconds from its beginning, and no more
+#   --row NAME        folder for the results inside DIR (default: the estimator's name)
+#   --robot FILE      sensors and their mounting (default: robot.toml beside the log)
+#   --out DIR         (default: the log's folder)
 #
 # Deletes the results of an earlier replay in DIR/ROW, and its logs DIR/logs/ROW.slam.log, .viewer.log and
 # .detector.log; other files there stay. A damaged log gives what is left of it, and exit code 1.
@@ -25,14 +26,14 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 parse_arguments() {
-  log='' estimator='' row='' robot='' out='' slam_options=() slam_files=() map_options=() part=()
+  log='' row='' robot='' out='' slam_options=() slam_files=() map_options=() part=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
       --estimator | --config | --set | --skip-s | --until-s | --row | --robot | --out | --load-map | --save-map | --mode | --start)
         need_value "$@"
         ;;&
-      --estimator) estimator=$2 ;;
+      --estimator) slam_options+=(--set "slam.estimator=$2") ;;
       --config) need_file "$2" && slam_files+=("$2") && slam_options+=(--config "$2") ;;
       --set) slam_options+=(--set "$2") ;;
       --load-map) need_file "$2" && slam_files+=("$2") && map_options+=(--load-map "$2") ;;
@@ -52,7 +53,6 @@ parse_arguments() {
     shift 2
   done
   [[ -n $log ]] || usage_error "no log given"
-  [[ -n $estimator ]] || usage_error "--estimator is missing"
 }
 
 # prepare: checks all inputs and settings, and only then deletes an earlier replay's results.
@@ -74,15 +74,16 @@ prepare() {
   clear_old_results
 }
 
-# check_slam: sets slam_options, and config to what they come to; adds to slam_files the survey.
+# check_slam: sets slam_options, estimator, and config to what they come to; adds to slam_files the survey.
 check_slam() {
   local seed='' scenario=${log%/*}/scenario.toml
   if [[ -f $scenario ]]; then
     need_programs waymark-sim
     seed=$("$bin_dir/waymark-sim" --config "$scenario" --print-config run.seed) || exit $?
   fi
-  slam_options=(--config "$robot" ${seed:+--set "slam.seed=$seed"} --set "slam.estimator=$estimator" "${slam_options[@]}")
+  slam_options=(--config "$robot" ${seed:+--set "slam.seed=$seed"} "${slam_options[@]}")
   config=$("$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config) || exit $?
+  estimator=$("$bin_dir/waymark-slam" "${slam_options[@]}" --print-config slam.estimator) || exit $?
   slam_files+=("$("$bin_dir/waymark-slam" "${slam_options[@]}" --print-config robot.markers.survey_file)") || exit $?
   "$bin_dir/waymark-slam" "${slam_options[@]}" "${map_options[@]}" "${part[@]}" --log "$log" --check || exit $?
 }

@@ -19,6 +19,13 @@ replay_writes_its_row() {
   grep -q -- "--set slam.seed=5 --set slam.estimator=odometry --set slam.a=1" "$work/slam.replay" || fail "slam"
 }
 
+replay_without_an_estimator_runs_the_configured_one() {
+  touch "$work/run.lcm" "$work/robot.toml"
+  expect 0 replay.sh "$work/run.lcm"
+  [[ -s $work/fake_estimator/config.toml ]] || fail "no results in $work/fake_estimator"
+  ! grep -q -- "--set slam.estimator" "$work/slam.replay" || fail "the estimator was set"
+}
+
 replay_finds_markers_in_images() {
   touch "$work/run.lcm" "$work/robot.toml"
   FAKE_channels='CAMERA LIDAR ODOMETRY' expect 0 replay.sh "$work/run.lcm" --estimator odometry --until-s 3
@@ -77,7 +84,7 @@ replay_into_a_row_that_cannot_be() {
     expect 2 replay.sh "$work/run.lcm" --estimator odometry --row "$name"
     expect_output "'$name' is no name for a row"
   done
-  expect 2 replay.sh "$work/run.lcm" --estimator ../odometry && expect_output "no name for a row"
+  expect 2 replay.sh "$work/run.lcm" --estimator unknown && expect_output "got 'unknown'"
   [[ ! -e $work/logs ]] || fail "something was written"
 }
 
