@@ -68,6 +68,8 @@ TEST_F(HealthText, NamesWhatObservesTheWeakAxis) {
   EXPECT_THAT(health_reason(view_), HasSubstr("only odometry measures it"));
   view_.estimate->weak_axis->direction = {0, 0, 1};
   EXPECT_THAT(health_reason(view_), HasSubstr("how the robot is turned"));
+  view_.estimate->health = Health::kLost;
+  EXPECT_EQ(health_reason(view_), "What the sensors see does not fit the map at this place.");
 }
 
 TEST_F(HealthText, ShowsHowLongTheCameraOrMarkersHaveBeenMissing) {

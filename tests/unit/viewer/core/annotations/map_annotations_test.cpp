@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,7 +64,11 @@ TEST(ScaleBar, IsAsLongAsItsLabelSays) {
     int left = 699;
     while (left > 0 && count_pixels(page.col(left), palette::kInk) > 0)
       --left;
-    EXPECT_NEAR(699 - left, px_per_m * std::stod(label), 2.0) << label;
+    const double length_px = px_per_m * std::stod(label);
+    EXPECT_NEAR(699 - left, length_px, 2.0) << label;
+    const int second = static_cast<int>(std::lround(700.0 - 0.75 * length_px));
+    EXPECT_GE(count_pixels(page.col(second), palette::kInk), 10) << "the frame of the second piece";
+    EXPECT_LT(count_pixels(page.col(second + 5), palette::kInk), 6) << "its inside";
   }
 }
 

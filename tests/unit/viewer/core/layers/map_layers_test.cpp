@@ -57,6 +57,25 @@ struct Picture {
   }
 };
 
+TEST(StrokesAt, AreFinerAtSmallScalesButStayVisible) {
+  const StrokeWidths full{};
+  EXPECT_EQ(strokes_at(1000.0).health_px, full.health_px);
+  const StrokeWidths fine = strokes_at(40.0);
+  EXPECT_EQ(fine.health_px, full.health_px / 2);
+  EXPECT_EQ(fine.true_px, full.true_px / 2);
+  EXPECT_GT(strokes_at(0.1).odometry_px, 1);
+}
+
+TEST(DrawPaths, OdometryIsDrawnOnlyWhereItIsIncluded) {
+  const PageContent content{.odometry_in_map = {{.frame_from_base = {-0.5, 0.5, 0.0}},
+                                                {.frame_from_base = {0.5, 0.5, 0.0}}}};
+  for (const OdometryPath odometry : {OdometryPath::kIncluded, OdometryPath::kLeftOut}) {
+    Picture picture;
+    draw_paths(picture.pixels, picture.view, content, {}, odometry);
+    EXPECT_EQ(picture.has(palette::kOdometry, 100, 50), odometry == OdometryPath::kIncluded);
+  }
+}
+
 TEST(DrawPlates, AMarkerIsABarAlongItsWallWithALineTowardsItsFront) {
   Picture picture;
   const Landmark facing_up{.map_from_marker = {0.5, 0.2, std::numbers::pi / 2},
