@@ -60,7 +60,6 @@ Eigen::Matrix3d MatchedScan::information() const {
 ScanRegistration::ScanRegistration(const WaymarkConfig& config, double range_sigma_m)
     : config_{config.scan},
       min_score_{config.loops.min_score},
-      described_range_sigma_m_{range_sigma_m},
       usual_fit_{config.scan.min_inliers, config.min_inlier_share},
       range_noise_{range_sigma_m},
       range_scale_{config.scan.cell_spacing_m} {}
@@ -81,23 +80,21 @@ std::optional<MatchedScan> ScanRegistration::matched(const Points& points,
                                                      const Prediction& prediction,
                                                      const MapsForScan& maps) const {
   if (points.empty()) return std::nullopt;
-  MatchedScan scan;
   if (maps.loaded != nullptr) {
-    scan.match = maps.loaded->match(points, prediction.map_from_base, prediction.covariance,
-                                    range_noise_, config_);
-    scan.loaded = maps.loaded;
-    if (maps.is_fixed || is_in_loaded_map(scan.match)) return scan;
+    const ScanMatch match = maps.loaded->match(points, prediction.map_from_base,
+                                               prediction.covariance, range_noise_, config_);
+    if (maps.is_fixed || is_in_loaded_map(match))
+      return MatchedScan{.match = match, .loaded = maps.loaded};
   }
   if (maps.submap == nullptr) return std::nullopt;
-  scan.submap = maps.submap;
-  scan.loaded = nullptr;
-  scan.map_from_submap = maps.map_from_submap;
-  const NdtMap& ndt = scan.submap->ndt();
-  const SubmapPrediction guess = in_submap(prediction, scan.map_from_submap);
+  const NdtMap& ndt = maps.submap->ndt();
+  const SubmapPrediction guess = in_submap(prediction, maps.map_from_submap);
   const ScanMatch plain = match_scan(points, ndt, guess.submap_from_base, guess.covariance,
-                                     range_noise_, config_, scan.submap->coarse_ndt());
-  scan.match = with_settled_walls(plain, points, ndt, guess.covariance, range_noise_, config_);
-  return scan;
+                                     range_noise_, config_, maps.submap->coarse_ndt());
+  return MatchedScan{
+      .match = with_settled_walls(plain, points, ndt, guess.covariance, range_noise_, config_),
+      .submap = maps.submap,
+      .map_from_submap = maps.map_from_submap};
 }
 
 void ScanRegistration::search_widely(const Observation& observation, const MapsForScan& maps,
@@ -190,7 +187,6 @@ bool ScanRegistration::is_in_loaded_map(const ScanMatch& match) const {
 
 void ScanRegistration::report(SensorStatistics& statistics) const {
   statistics.range_sigma_m = std::sqrt(range_noise_.variance_m2());
-  statistics.described_range_sigma_m = described_range_sigma_m_;
   statistics.scans = scans_;
   statistics.scans_unusable = scans_unusable_;
   statistics.scans_refuted = scans_refuted_;

@@ -106,9 +106,6 @@ class ScanRegistration {
   /// To be called with the match of a keyframe that was added to the graph.
   void note_keyframe(const ScanMatch& match) { usual_fit_.note_keyframe(match); }
 
-  /// Most mapped beams are outliers: sensor or pose is wrong.
-  bool is_refuted(const ScanMatch& match) const { return usual_fit_.is_refuted(match); }
-
   /// Whether the match is not refuted and has enough inliers to be used.
   bool is_usable(const ScanMatch& match) const {
     return !usual_fit_.is_refuted(match) && match.is_usable(config_);
@@ -121,7 +118,7 @@ class ScanRegistration {
 
   const RangeNoise& range_noise() const { return range_noise_; }
 
-  /// Fills in what concerns the LiDAR.
+  /// Fills in what was counted and learnt here.
   void report(SensorStatistics& statistics) const;
 
  private:
@@ -139,7 +136,6 @@ class ScanRegistration {
 
   ScanMatchConfig config_;
   double min_score_;  ///< of a wide search
-  double described_range_sigma_m_;
   UsualFit usual_fit_;
   RangeNoise range_noise_;
   RangeScaleMonitor range_scale_;

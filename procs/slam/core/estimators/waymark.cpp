@@ -90,9 +90,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   const Observation& observation = corrected ? *corrected : measured;
   bool is_keyframe = commanded_pose_ || odometry_check_.is_refused() ||
                      is_keyframe_due(observation) || is_contradicted_by(observation);
-  const Se2 map_from_last = graph_.state().keyframes.empty()
-                                ? Se2{}
-                                : graph_.state().keyframes.back() * newest_from_last_scan_;
+  const Se2 map_from_last = map_from_last_scan();
   BetweenKeyframes between;
   if (!is_keyframe) {
     between = between_keyframes(scan);
@@ -127,6 +125,11 @@ void WaymarkEstimator::note_reason(EstimateReason reason) {
   reason_ = std::max(reason_, reason);
 }
 
+Se2 WaymarkEstimator::map_from_last_scan() const {
+  if (graph_.state().keyframes.empty()) return {};
+  return graph_.state().keyframes.back() * newest_from_last_scan_;
+}
+
 MapsForScan WaymarkEstimator::maps_for_scan() const {
   MapsForScan maps{map_.map()};
   maps.submap = submaps_.current();
@@ -146,7 +149,7 @@ ScanAtPrediction WaymarkEstimator::match_at_prediction(const Observation& observ
   scan.searched = scan.expected;
   if (unmeasured_motion_.is_standing())
     scan.searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
-  scan.map_from_last = graph_.state().keyframes.back() * newest_from_last_scan_;
+  scan.map_from_last = map_from_last_scan();
   scan.steps_without_odometry = odometry_check_.steps_without_odometry();
   registration_.match(observation, maps_for_scan(), scan);
   return scan;
@@ -159,7 +162,7 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   if (scan.matched) registration_.search_widely(observation, maps_for_scan(), scan);
   const auto& matched = scan.matched;
   KeyframeScan used;
-  used.is_refuted = matched && registration_.is_refuted(matched->match);
+  used.is_refuted = matched && registration_.usual_fit().is_refuted(matched->match);
   const bool is_usable = matched && registration_.is_usable(matched->match);
   const bool observes_all_axes = is_usable && !matched->match.observed.is_degenerate;
   // The noise of standing odometry is so small that the solver would keep the predicted pose: the

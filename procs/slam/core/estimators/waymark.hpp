@@ -128,6 +128,7 @@ class WaymarkEstimator final : public Estimator {
   bool is_contradicted_by(const Observation& observation) const;
   bool sees_known_markers(const Observation& observation) const;
   Prediction prediction() const;
+  Se2 map_from_last_scan() const;
   MapsForScan maps_for_scan() const;
   ScanAtPrediction match_at_prediction(const Observation& observation) const;
   void add_keyframe(const Observation& observation, ScanAtPrediction& scan);

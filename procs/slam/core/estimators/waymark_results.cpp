@@ -55,6 +55,7 @@ std::optional<SensorStatistics> WaymarkEstimator::statistics() const {
   statistics.slips = noise_learner_.num_slips();
   statistics.slip_m_per_sqrt_m = std::sqrt(learnt.slip_m2_per_m);
   registration_.report(statistics);
+  statistics.described_range_sigma_m = setup_.range_sigma_m;
   if (loaded_map_) statistics.loaded_map = loaded_map_->fit();
   statistics.loops_ambiguous = loop_finder_.num_ambiguous();
   const Calibration variances = graph_.covariance({}, {}).diagonal();
