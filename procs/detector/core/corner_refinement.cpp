@@ -55,13 +55,12 @@ Sides sides_of(const Corners& corners) {
 /// @param margin_px  see SampledSquare::corner_margin_px().
 std::vector<EdgePoint> edge_points(const SampledSide& sampled, double black, double margin_px,
                                    double min_contrast) {
-  const double half_window_px = sampled.half_window_px();
   std::vector<EdgePoint> points;
   for (const EdgeProfile& profile : sampled.profiles) {
-    if (profile.white - black < min_contrast) continue;
+    if (sampled.levels(profile, black).white - black < min_contrast) continue;
     if (std::min(profile.along_px, sampled.side.length_px() - profile.along_px) < margin_px)
       continue;
-    const auto offset_px = profile.edge_px(black, half_window_px);
+    const auto offset_px = sampled.edge_px(profile, black);
     if (offset_px) points.push_back({profile.along_px, *offset_px});
   }
   return points;
@@ -188,12 +187,12 @@ std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camer
                  side.side.length_px(), config.min_points);
     if (!line || line->residual_px > config.max_residual_px) return std::nullopt;
     lines[k] = *line;
-    double sigma_px = common_sigma_px(side.border_px, config);
-    if (side.is_blurred()) {
-      const double bias_px = blur_bias_px(gray, camera, square, k);
-      lines[k].at_start_px -= bias_px;
-      sigma_px = std::hypot(sigma_px, kBiasSigmaShare * bias_px, kBlurSigmaShare * side.blur_px);
-    }
+    const auto bias_px = blur_bias_px(gray, camera, square, k);
+    if (!bias_px) return std::nullopt;
+    lines[k].at_start_px -= *bias_px;
+    double sigma_px =
+        std::hypot(common_sigma_px(side.border_px, config), kBiasSigmaShare * *bias_px);
+    if (side.is_blurred()) sigma_px = std::hypot(sigma_px, kBlurSigmaShare * side.blur_px);
     lines[k].covariance_at_corners.array() += sigma_px * sigma_px;
   }
   FittedQuad quad = intersect(sides_of(corners), lines);
@@ -203,8 +202,10 @@ std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camer
 
 double largest_move_px(const Corners& from, const Corners& to) {
   double largest = 0.0;
-  for (std::size_t k = 0; k < 4; ++k)
-    largest = std::max(largest, (to[k] - from[k]).norm());
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double moved_px = (to[k] - from[k]).norm();
+    if (!(moved_px <= largest)) largest = moved_px;  // also when it is not a number
+  }
   return largest;
 }
 
@@ -247,7 +248,7 @@ MeasuredCorners refine_corners(const cv::Mat& gray, const CameraModel& camera,
     if (!(largest_move_px(unrefined.ideal_px, measured.ideal_px) <= config.max_move_px)) {
       return unrefined;
     }
-    if (pass >= kMinPasses && !(quad->is_blurred && moved_px > kConvergedPx)) break;
+    if (pass >= kMinPasses && moved_px <= kConvergedPx) break;
   }
   return measured;
 }

@@ -14,10 +14,14 @@ constexpr double kCornerMarginPx = 2.0;
 constexpr double kMaxCornerMarginRate = 0.2;
 // Offsets at which the white and black levels are read, as shares of the reach: outside the blur of
 // the edge.
-constexpr double kWhiteFrom = 0.6;
+constexpr double kWhiteAt = 0.8;
+constexpr double kWhiteHalfWidth = 0.2;
+constexpr double kLeastWhitePx = 1.2;
 constexpr double kBlackAt = 0.5 * kThickBorder;
 constexpr double kBlackHalfWidth = 0.15;
-constexpr double kDark = 0.12;  // a bit up to this share of the contrast above the darkest is black
+// A bit up to this share of the contrast above the darkest is black; a wall down to the same share
+// below the brightest is as white as the quiet zone.
+constexpr double kDark = 0.12;
 
 /// Bilinear; nullopt outside the image.
 std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& raw_px) {
@@ -36,9 +40,14 @@ std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& 
          down * ((1 - right) * lower[0] + right * lower[1]);
 }
 
-bool is_white(const std::optional<double>& level, const std::vector<double>& profile) {
+bool is_white(const std::optional<double>& bit, const std::vector<double>& profile) {
   const auto [darkest, brightest] = std::ranges::minmax(profile);
-  return level && *level > darkest + kDark * (brightest - darkest);
+  return bit && *bit > darkest + kDark * (brightest - darkest);
+}
+
+bool is_as_white(const std::optional<double>& wall, const std::vector<double>& profile) {
+  const auto [darkest, brightest] = std::ranges::minmax(profile);
+  return !wall || *wall > brightest - kDark * (brightest - darkest);
 }
 
 double mean_between(const EdgeProfile& profile, double from_rate, double to_rate) {
@@ -54,10 +63,15 @@ double mean_between(const EdgeProfile& profile, double from_rate, double to_rate
 }  // namespace
 
 /// Where the bit behind a thin border is white, the black level is read in the middle of the
-/// border, farthest from its outer edge and from the bit.
+/// border, farthest from its outer edge and from the bit; in the same way the white level of a
+/// quiet zone that is not wider than the border.
 void read_levels(EdgeProfile& profile, double border_px) {
-  profile.white = mean_between(profile, kWhiteFrom, 1.0);
   const double middle = 0.5 * border_px / profile.reach_px;
+  const double narrow_at =
+      std::clamp(middle, std::min(kWhiteAt, kLeastWhitePx / profile.reach_px), kWhiteAt);
+  const double white_at = profile.is_white_beyond ? kWhiteAt : narrow_at;
+  const double white_half_width = std::max(0.0, kWhiteHalfWidth - (kWhiteAt - white_at));
+  profile.white = mean_between(profile, white_at - white_half_width, white_at + white_half_width);
   const double at = profile.is_white_behind ? std::min(middle, kBlackAt) : kBlackAt;
   const double half_width = std::max(0.0, kBlackHalfWidth - (kBlackAt - at));
   profile.black = mean_between(profile, -at - half_width, -at + half_width);
@@ -86,23 +100,23 @@ std::optional<double> EdgeProfile::crossing_px(double level) const {
   return nearest_px;
 }
 
-std::optional<double> EdgeProfile::edge_px(double black_level, double half_window_px) const {
-  const auto crossing = crossing_px(0.5 * (white + black_level));
+std::optional<double> EdgeProfile::edge_px(const GreyLevels& levels, double half_window_px) const {
+  if (!(levels.white > levels.black)) return std::nullopt;
+  const auto crossing = crossing_px(0.5 * (levels.white + levels.black));
   if (!crossing) return std::nullopt;
   const double half_px = std::min(half_window_px, reach_px - std::abs(*crossing));
   const int steps = std::max(1, static_cast<int>(std::ceil(half_px * kStepsPerPixel)));
   double white_share = 0.0;
   for (int i = -steps; i < steps; ++i) {
     const double level = at(*crossing + half_px * (i + 0.5) / steps);
-    white_share += (level - black_level) / (white - black_level) / (2.0 * steps);
+    white_share += (level - levels.black) / (levels.white - levels.black) / (2.0 * steps);
   }
   return *crossing + half_px * (1.0 - 2.0 * white_share);
 }
 
-std::optional<double> EdgeProfile::blur_px(double black_level) const {
-  constexpr double kQuartileDistance = 1.349;  // distance of a normal's quartiles, in sigmas
-  const auto low = crossing_px(black_level + 0.25 * (white - black_level));
-  const auto high = crossing_px(black_level + 0.75 * (white - black_level));
+std::optional<double> EdgeProfile::blur_px(const GreyLevels& levels) const {
+  const auto low = crossing_px(levels.black + 0.25 * (levels.white - levels.black));
+  const auto high = crossing_px(levels.black + 0.75 * (levels.white - levels.black));
   if (!low || !high || *high < *low) return std::nullopt;
   return (*high - *low) / kQuartileDistance;
 }
@@ -128,9 +142,12 @@ std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel&
       profile.brightness.push_back(*value);
     }
     if (std::ssize(profile.brightness) != steps + 1) continue;
-    const Eigen::Vector2d behind_px = place_px - kInnerBits * border_px * side.outward();
-    profile.is_white_behind =
-        is_white(brightness_at(gray, camera.raw_from_ideal(behind_px)), profile.brightness);
+    const auto brightness_out = [&](double modules) {
+      return brightness_at(gray,
+                           camera.raw_from_ideal(place_px + modules * border_px * side.outward()));
+    };
+    profile.is_white_behind = is_white(brightness_out(-kInnerBits), profile.brightness);
+    profile.is_white_beyond = is_as_white(brightness_out(kInnerBits), profile.brightness);
     read_levels(profile, border_px);
     profiles.push_back(std::move(profile));
   }
@@ -138,12 +155,13 @@ std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel&
 }
 
 std::optional<double> mean_brightness_inside(const cv::Mat& gray, const CameraModel& camera,
-                                             const Side& side, double inside_px) {
-  const int count = std::max(2, static_cast<int>(side.length_px()));
+                                             const Side& side, double inside_px, double margin_px) {
+  const double length_px = side.length_px() - 2.0 * margin_px;
+  const int count = std::max(2, static_cast<int>(length_px));
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector2d place_px =
-        side.start_px + (i + 0.5) / count * (side.end_px - side.start_px);
+        side.start_px + (margin_px + (i + 0.5) / count * length_px) * side.along();
     const auto value =
         brightness_at(gray, camera.raw_from_ideal(place_px - inside_px * side.outward()));
     if (!value) return std::nullopt;

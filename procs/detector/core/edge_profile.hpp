@@ -20,6 +20,9 @@ inline constexpr double kInnerBits = 1.5;
 /// that the blur of the bits behind it does not change.
 inline constexpr double kThickBorder = 1.5;
 
+/// Distance of a normal distribution's quartiles, in standard deviations.
+inline constexpr double kQuartileDistance = 1.349;
+
 /// One side of a marker's black square in ideal pixels (without lens distortion), from corner to
 /// corner, clockwise around the marker.
 struct Side {
@@ -33,6 +36,11 @@ struct Side {
   Eigen::Vector2d outward() const { return {along().y(), -along().x()}; }
 };
 
+struct GreyLevels {
+  double black{0.0};
+  double white{0.0};
+};
+
 /// Grey levels along a line perpendicular to a side, in equal steps from -reach_px (inside, in the
 /// black border) to +reach_px (outside, in the white quiet zone).
 struct EdgeProfile {
@@ -40,6 +48,7 @@ struct EdgeProfile {
   double reach_px{0.0};
   std::vector<double> brightness{};
   bool is_white_behind{false};  ///< the bit behind the black border is white
+  bool is_white_beyond{true};   ///< one and a half borders outside it is as white, or not in view
   double white{0.0};            ///< mean grey level outside, in the quiet zone
   double black{0.0};  ///< mean grey level in the border; too bright if blurred in a thin border
 
@@ -53,11 +62,11 @@ struct EdgeProfile {
   /// profile in a window about its half-height crossing. In sharp images the crossing itself is off
   /// by up to 0.09 px, depending on where in a pixel the edge lies; this offset does not depend on
   /// that. nullopt without a crossing.
-  std::optional<double> edge_px(double black_level, double half_window_px) const;
+  std::optional<double> edge_px(const GreyLevels& levels, double half_window_px) const;
   /// Standard deviation [px] of the point spread across the edge, from the distance between the
   /// crossings at 25 % and 75 % of the step from black to white; the bits behind the border hardly
   /// affect these crossings. nullopt when one of them is missing.
-  std::optional<double> blur_px(double black_level) const;
+  std::optional<double> blur_px(const GreyLevels& levels) const;
 };
 
 /// Sets `white` and `black` of a profile from its samples.
@@ -69,9 +78,10 @@ void read_levels(EdgeProfile& profile, double border_px);
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
                                          const Side& side, double reach_px, double border_px);
 
-/// Mean grey level along the line parallel to a side, inside_px inside it; nullopt if that line
-/// leaves the image.
+/// Mean grey level along the line parallel to a side, inside_px inside it, without margin_px at
+/// both ends; nullopt if that line leaves the image.
 std::optional<double> mean_brightness_inside(const cv::Mat& gray, const CameraModel& camera,
-                                             const Side& side, double inside_px);
+                                             const Side& side, double inside_px,
+                                             double margin_px = 0.0);
 
 }  // namespace waymark

@@ -10,13 +10,15 @@
 namespace waymark {
 namespace {
 
-// Up to this standard deviation [px] of the point spread, blur does not displace edges. Sharp
-// images have 0.5 to 0.75 px, from the area of the pixels and the interpolation between them.
-constexpr double kSharpPx = 0.95;
+// Of a blur [px] above the first, with a border thicker than the second, the neighbouring sides'
+// corners are kept away.
+constexpr double kBlurredPx = 0.95;
 constexpr double kMinBorderPx = 2.0;
 constexpr double kCornerBlurs = 3.0;  // a corner bends the edge over so many sigmas of the blur
 constexpr double kHalfWhite = 0.5;    // assumed share of white bits; has little effect here
 constexpr std::size_t kMinLevels = 4;
+constexpr double kNearEnd = 0.3;      // of a side's length
+constexpr double kMuchThicker = 1.5;  // by perspective, seen from the side
 
 double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   const Eigen::Vector2d ab = b - a;
@@ -50,8 +52,14 @@ std::array<double, 4> border_thickness_px(const std::array<Side, 4>& sides, int 
   return thickness_px;
 }
 
-/// Median black level of the two opposite sides with the thicker borders. If even these borders are
-/// thin, blur lets white bits brighten them: then only profiles in front of black bits count.
+/// True when even the thicker borders are so thin that blur lets white bits brighten them.
+bool is_thin_everywhere(const SampledSquare& square) {
+  const SampledSide& thick = square.sides[square.thick_side()];
+  return thick.border_px < kThickBorder * thick.reach_px;
+}
+
+/// Median black level of the two opposite sides with the thicker borders; of the profiles in front
+/// of black bits only, if all borders are thin.
 double black_level(const SampledSquare& square) {
   const std::size_t first = square.thick_side();
   std::vector<double> levels;
@@ -63,17 +71,44 @@ double black_level(const SampledSquare& square) {
     }
   }
   if (levels.empty()) return 0.0;
-  const bool is_thin = square.sides[first].border_px < kThickBorder * square.sides[first].reach_px;
-  return upper_median(is_thin && before_black_bits.size() >= kMinLevels
+  return upper_median(is_thin_everywhere(square) && before_black_bits.size() >= kMinLevels
                           ? std::move(before_black_bits)
                           : std::move(levels));
 }
 
-double blur_of(const std::vector<EdgeProfile>& profiles, double black) {
+double blur_of(const SampledSide& side, double black) {
   std::vector<double> blurs;
-  for (const EdgeProfile& profile : profiles)
-    if (const auto blur_px = profile.blur_px(black)) blurs.push_back(*blur_px);
+  for (const EdgeProfile& profile : side.profiles) {
+    if (const auto blur_px = profile.blur_px(side.levels(profile, black)))
+      blurs.push_back(*blur_px);
+  }
   return blurs.empty() ? 0.0 : upper_median(std::move(blurs));
+}
+
+/// Mean white level of a side's profiles near one of its ends.
+std::optional<double> white_near_end(const SampledSide& side, bool at_start) {
+  double sum = 0.0;
+  int count = 0;
+  for (const EdgeProfile& profile : side.profiles) {
+    const double share = profile.along_px / side.side.length_px();
+    if ((at_start ? share : 1.0 - share) > kNearEnd) continue;
+    sum += profile.white;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+/// See SampledSide::white_beside.
+std::optional<double> white_beside(const SampledSquare& square, std::size_t side) {
+  const SampledSide& before = square.sides[(side + 3) % 4];
+  const SampledSide& after = square.sides[(side + 1) % 4];
+  if (std::min(before.border_px, after.border_px) < kMuchThicker * square.sides[side].border_px)
+    return std::nullopt;
+  const auto white_before = white_near_end(before, false);
+  const auto white_after = white_near_end(after, true);
+  if (!white_before || !white_after) return std::nullopt;
+  return 0.5 * (*white_before + *white_after);
 }
 
 double mean_white(const std::vector<EdgeProfile>& profiles) {
@@ -86,7 +121,7 @@ double mean_white(const std::vector<EdgeProfile>& profiles) {
 }  // namespace
 
 bool SampledSide::is_blurred() const {
-  return blur_px > kSharpPx && border_px > kMinBorderPx;
+  return blur_px > kBlurredPx && border_px > kMinBorderPx;
 }
 
 double SampledSide::half_window_px() const {
@@ -122,27 +157,38 @@ SampledSquare sample_square(const cv::Mat& gray, const CameraModel& camera,
                        sample_profiles(gray, camera, sides[k], side_reach_px, border_px[k])};
   }
   square.black = black_level(square);
-  for (SampledSide& side : square.sides)
-    side.blur_px = blur_of(side.profiles, square.black);
+  for (std::size_t k = 0; k < 4; ++k) {
+    SampledSide& side = square.sides[k];
+    side.white_beside = white_beside(square, k);
+    side.blur_px = blur_of(side, square.black);
+  }
   return square;
 }
 
-double blur_bias_px(const cv::Mat& gray, const CameraModel& camera, const SampledSquare& square,
-                    std::size_t side) {
+std::optional<double> blur_bias_px(const cv::Mat& gray, const CameraModel& camera,
+                                   const SampledSquare& square, std::size_t side) {
   const SampledSide& sampled = square.sides[side];
-  if (sampled.profiles.empty()) return 0.0;
-  const auto inner =
-      mean_brightness_inside(gray, camera, sampled.side, kInnerBits * sampled.border_px);
-  if (!inner) return 0.0;
-  const double inner_white =
-      std::clamp((*inner - square.black) / (mean_white(sampled.profiles) - square.black), 0.0, 1.0);
+  if (sampled.profiles.empty()) return std::nullopt;
   const SampledSide& thick = square.sides[square.thick_side()];
-  const double blurred_black =
-      BlurredSide{std::max(kSharpPx, thick.blur_px), thick.border_px, kHalfWhite}
-          .profile(thick.reach_px)
-          .black;
-  return BlurredSide{sampled.blur_px, sampled.border_px, inner_white}.bias_px(
-      sampled.reach_px, blurred_black, sampled.half_window_px());
+  const double thick_white = mean_white(thick.profiles.empty() ? sampled.profiles : thick.profiles);
+  // Share of white in the row of modules whose centres are that far inside.
+  const auto white_share = [&](double modules, double unknown) {
+    const auto mean = mean_brightness_inside(
+        gray, camera, sampled.side, modules * sampled.border_px, square.corner_margin_px(side));
+    if (!mean) return unknown;
+    return std::clamp((*mean - square.black) / (thick_white - square.black), 0.0, 1.0);
+  };
+  // Where the border is thin, the bits behind it change the blur that is measured.
+  const double own_blur_px = sampled.border_px > kMinBorderPx ? sampled.blur_px : 0.0;
+  const double blur_px = std::max({kSharpPx, thick.blur_px, own_blur_px});
+  const BlurredSide model{blur_px, sampled.border_px, white_share(kInnerBits, kHalfWhite),
+                          white_share(-kInnerBits, 1.0)};
+  const EdgeProfile profile = model.profile(sampled.reach_px);
+  const BlurredSide of_thick{std::max(kSharpPx, thick.blur_px), thick.border_px,
+                             is_thin_everywhere(square) ? 0.0 : kHalfWhite, model.outer_white};
+  const EdgeProfile levels = of_thick.profile(thick.reach_px);
+  const double white = sampled.white_beside ? levels.white : profile.white;
+  return profile.edge_px({levels.black, white}, sampled.half_window_px());
 }
 
 }  // namespace waymark

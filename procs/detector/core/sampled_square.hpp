@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace waymark {
@@ -19,10 +20,23 @@ struct SampledSide {
   double reach_px{0.0};   ///< half the length of each profile
   std::vector<EdgeProfile> profiles{};
   double blur_px{0.0};  ///< standard deviation of the point spread across the side
+  /// Grey level of the quiet zone at both ends of a side whose own quiet zone looks much thinner
+  /// than those of its neighbours: of these, near the side.
+  std::optional<double> white_beside{};
 
-  /// True when the image is blurred so much that the edge is displaced. False also for a thin
-  /// border (up to 2 px), where blur cannot be measured: the bits behind the border widen the edge.
+  /// True when the image is blurred so much that the ends of neighbouring sides are bent. False
+  /// also for a thin border (up to 2 px), where blur cannot be measured: the bits behind the border
+  /// widen the edge.
   bool is_blurred() const;
+
+  /// Grey levels between which the edge of a profile of this side rises.
+  GreyLevels levels(const EdgeProfile& profile, double black) const {
+    return {black, white_beside.value_or(profile.white)};
+  }
+
+  std::optional<double> edge_px(const EdgeProfile& profile, double black) const {
+    return profile.edge_px(levels(profile, black), half_window_px());
+  }
 
   /// Half window for EdgeProfile::edge_px(): wide enough for the blur of the edge, narrow enough to
   /// exclude the blur of the inner bits.
@@ -52,7 +66,7 @@ SampledSquare sample_square(const cv::Mat& gray, const CameraModel& camera,
 
 /// Outward bias [px] that EdgeProfile::edge_px() has on a blurred side, by the model BlurredSide:
 /// white bits behind the border brighten the border and shift the edge.
-double blur_bias_px(const cv::Mat& gray, const CameraModel& camera, const SampledSquare& square,
-                    std::size_t side);
+std::optional<double> blur_bias_px(const cv::Mat& gray, const CameraModel& camera,
+                                   const SampledSquare& square, std::size_t side);
 
 }  // namespace waymark

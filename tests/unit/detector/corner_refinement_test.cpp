@@ -78,7 +78,7 @@ TEST(CornerRefinement, CornersAreFoundWithoutBiasWhereverThePixelsLie) {
 }
 
 /// Mean error of each corner over poses in a corridor 2 m wide.
-Corners mean_error_in_corridor_px(double wall_y_m, double blur_sigma_px, double farthest_m) {
+Corners mean_error_in_corridor_px(double wall_y_m, const ImageLook& look, double farthest_m) {
   Corners sum{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
               Eigen::Vector2d::Zero()};
   Random random{3};
@@ -88,8 +88,7 @@ Corners mean_error_in_corridor_px(double wall_y_m, double blur_sigma_px, double 
     const Eigen::Vector3d centre_m{camera_x_m + random.uniform(2.0, farthest_m),
                                    wall_y_m + random.uniform(-0.1, 0.1), 0.3};
     const double facing_rad = wall_y_m > 0.0 ? -0.5 * std::numbers::pi : 0.5 * std::numbers::pi;
-    const Scene scene = scene_with({}, base_from_upright_marker(centre_m, facing_rad),
-                                   {.blur_sigma_px = blur_sigma_px, .noise_sigma = 3.0});
+    const Scene scene = scene_with({}, base_from_upright_marker(centre_m, facing_rad), look);
     const Corners error = refined_error_px(scene, 0.7);
     for (std::size_t k = 0; k < 4; ++k)
       sum[k] += error[k] / kPoses;
@@ -100,10 +99,46 @@ Corners mean_error_in_corridor_px(double wall_y_m, double blur_sigma_px, double 
 TEST(CornerRefinement, CornersInACorridorAreUnbiasedOnBothWalls) {
   // An error that all markers of a corridor have in common does not average out along it.
   for (const double wall_y_m : {1.0, -1.0}) {
-    for (const Eigen::Vector2d& error : mean_error_in_corridor_px(wall_y_m, 0.0, 3.3))
+    for (const Eigen::Vector2d& error :
+         mean_error_in_corridor_px(wall_y_m, {.blur_sigma_px = 0.0}, 3.3))
       EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.01) << "pixels' own area, wall at " << wall_y_m;
-    for (const Eigen::Vector2d& error : mean_error_in_corridor_px(wall_y_m, 0.6, 2.7))
+    for (const Eigen::Vector2d& error :
+         mean_error_in_corridor_px(wall_y_m, {.blur_sigma_px = 0.6}, 2.7))
       EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.01) << "blurred, wall at " << wall_y_m;
+  }
+}
+
+// Seen from the side, a quiet zone of one module is two or three pixels wide: the wall beyond it
+// must not count as white.
+TEST(CornerRefinement, WhatLiesBeyondANarrowQuietZoneDoesNotBiasCorners) {
+  for (const double wall : {40.0, 140.0}) {
+    for (const double blur_sigma_px : {0.0, 0.6}) {
+      for (const double wall_y_m : {1.0, -1.0}) {
+        const Corners errors = mean_error_in_corridor_px(
+            wall_y_m, {.wall = wall, .quiet_zone_modules = 1.0, .blur_sigma_px = blur_sigma_px},
+            3.3);
+        for (const Eigen::Vector2d& error : errors)
+          EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.02)
+              << "wall " << wall << " at " << wall_y_m << ", blur " << blur_sigma_px;
+      }
+    }
+  }
+}
+
+TEST(CornerRefinement, AMarkerThatIsSeenAlmostEdgeOnHasFiniteCorners) {
+  for (const double ahead_m : {2.5, 3.5, 4.5, 6.0, 8.0}) {
+    for (const double aside_m : {0.3, 0.5, 0.8}) {
+      const Scene scene = scene_with(
+          {}, base_from_upright_marker({ahead_m, aside_m, 0.25}, -0.5 * std::numbers::pi),
+          {.wall = 15.0, .quiet_zone_modules = 1.0});
+      const MeasuredCorners corners =
+          refine_corners(scene.image, CameraModel{scene.robot.camera},
+                         pulled_inwards(scene.true_raw_px, 0.3), kModules, {});
+      EXPECT_TRUE(corners.covariance.allFinite());
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_LT((corners.ideal_px[k] - scene.true_raw_px[k]).norm(), 5.5)
+            << ahead_m << " m ahead, " << aside_m << " m aside";
+    }
   }
 }
 
@@ -127,7 +162,8 @@ TEST(CornerRefinement, SmallMarkersHaveNoSizeBias) {
 // the marker's far side are off by 0.1 px and more, all in the same direction.
 TEST(CornerRefinement, CornersOfABlurredCameraAreNearlyUnbiased) {
   for (const double wall_y_m : {1.0, -1.0}) {
-    for (const Eigen::Vector2d& error : mean_error_in_corridor_px(wall_y_m, 1.0, 3.0))
+    for (const Eigen::Vector2d& error :
+         mean_error_in_corridor_px(wall_y_m, {.blur_sigma_px = 1.0}, 3.0))
       EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.06) << "wall at " << wall_y_m;
   }
 }
@@ -147,8 +183,10 @@ TEST(CornerRefinement, BlurMakesCornersLessCertain) {
 TEST(BlurredSide, BlurMovesTheEdgeOnlyIfWhiteBitsLieBehindAThinBorder) {
   const auto bias_px = [](double border_px, double inner_white) {
     const BlurredSide side{1.1, border_px, inner_white};
-    const double black = BlurredSide{1.1, 10.0, 0.5}.profile(3.0).black;
-    return side.bias_px(3.0, black, std::clamp(border_px - 1.1, 0.4, 2.0));
+    const EdgeProfile thick = BlurredSide{1.1, 10.0, 0.5}.profile(3.0);
+    return side.profile(3.0)
+        .edge_px({thick.black, thick.white}, std::clamp(border_px - 1.1, 0.4, 2.0))
+        .value();
   };
   EXPECT_LT(std::abs(bias_px(10.0, 1.0)), 0.01);
   EXPECT_LT(std::abs(bias_px(3.0, 0.0)), 0.01) << "nothing white behind the border";
@@ -156,9 +194,9 @@ TEST(BlurredSide, BlurMovesTheEdgeOnlyIfWhiteBitsLieBehindAThinBorder) {
 }
 
 TEST(EdgeProfile, MeasuresTheBlurAcrossAnEdge) {
-  for (const double blur_px : {0.6, 1.0, 1.4}) {
+  for (const double blur_px : {0.65, 1.0, 1.4}) {
     const EdgeProfile profile = BlurredSide{blur_px, 10.0, 0.5}.profile(5.0);
-    const auto measured_px = profile.blur_px(profile.black);
+    const auto measured_px = profile.blur_px({profile.black, profile.white});
     ASSERT_TRUE(measured_px);
     EXPECT_NEAR(*measured_px, blur_px, 0.05 * blur_px);
   }

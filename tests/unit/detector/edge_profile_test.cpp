@@ -74,10 +74,10 @@ TEST(EdgeProfile, TheRiseNearestToTheSideIsItsCrossing) {
 
 TEST(EdgeProfile, TheEdgeIsWhereAnIdealStepHasTheSameMeanLevel) {
   EdgeProfile profile = profile_of({0, 0, 0, 100, 100});
-  profile.white = 100.0;
-  EXPECT_NEAR(profile.edge_px(0.0, 1.0).value(), 0.5, 1e-9);
+  EXPECT_NEAR(profile.edge_px({0.0, 100.0}, 1.0).value(), 0.5, 1e-9);
+  EXPECT_FALSE(profile.edge_px({100.0, 100.0}, 1.0)) << "no contrast";
   profile.brightness = {100, 80, 60, 40, 20};
-  EXPECT_FALSE(profile.edge_px(0.0, 1.0)) << "there is none";
+  EXPECT_FALSE(profile.edge_px({0.0, 100.0}, 1.0)) << "there is none";
 }
 
 /// White above v = 20, black below, in 60 x 40 pixels.
@@ -98,7 +98,7 @@ TEST(SampleProfiles, AreSpreadAlongTheSideAwayFromItsCornersAndReadTheLevelsOnBo
     EXPECT_EQ(profile.white, 220.0);
     EXPECT_EQ(profile.black, 20.0);
     EXPECT_FALSE(profile.is_white_behind);
-    EXPECT_NEAR(profile.edge_px(profile.black, 2.0).value(), 0.0, 1e-6);
+    EXPECT_NEAR(profile.edge_px({profile.black, profile.white}, 2.0).value(), 0.0, 1e-6);
   }
 }
 
