@@ -15,7 +15,6 @@ constexpr double kPixelSpread = 1.73;
 constexpr double kLeastLensPx = 0.1;
 constexpr int kBisections = 12;
 constexpr double kUpperQuartile = 0.75;
-constexpr double kWhite = 0.88;  // a wall that is brighter is as white as the quiet zone
 
 /// Integral of the normal distribution's cumulative function.
 double normal_cdf_integral(double x, double sigma) {
@@ -57,7 +56,7 @@ EdgeProfile BlurredSide::profile(double reach_px) const {
                                      blurred_step(offset_px - border_px, lens_px));
   }
   profile.is_white_behind = inner_white > 0.0;
-  profile.is_white_beyond = outer_white > kWhite;
+  profile.is_white_beyond = outer_white > 1.0 - kSameGrey;
   read_levels(profile, border_px);
   return profile;
 }

@@ -15,7 +15,7 @@ namespace waymark {
 namespace {
 
 // The first pass starts from sides about half a pixel off the edge, the second from fitted ones;
-// blurred images need more passes.
+// blurred images and small markers need more.
 constexpr int kMinPasses = 2;
 constexpr int kMaxPasses = 6;
 constexpr double kConvergedPx = 0.1;  // a pass that moves every corner by less is the last one
@@ -145,7 +145,6 @@ Eigen::Vector2d intersection(const Side& a, const Side& b) {
 struct FittedQuad {
   Corners corners{};
   Eigen::Matrix<double, 8, 8> covariance{};
-  bool is_blurred{false};
 };
 
 FittedQuad intersect(const Sides& sides, const std::array<EdgeLine, 4>& lines) {
@@ -196,7 +195,6 @@ std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camer
     lines[k].covariance_at_corners.array() += sigma_px * sigma_px;
   }
   FittedQuad quad = intersect(sides_of(corners), lines);
-  quad.is_blurred = square.is_blurred();
   return quad;
 }
 

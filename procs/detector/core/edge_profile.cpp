@@ -19,9 +19,6 @@ constexpr double kWhiteHalfWidth = 0.2;
 constexpr double kLeastWhitePx = 1.2;
 constexpr double kBlackAt = 0.5 * kThickBorder;
 constexpr double kBlackHalfWidth = 0.15;
-// A bit up to this share of the contrast above the darkest is black; a wall down to the same share
-// below the brightest is as white as the quiet zone.
-constexpr double kDark = 0.12;
 
 /// Bilinear; nullopt outside the image.
 std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& raw_px) {
@@ -42,12 +39,12 @@ std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& 
 
 bool is_white(const std::optional<double>& bit, const std::vector<double>& profile) {
   const auto [darkest, brightest] = std::ranges::minmax(profile);
-  return bit && *bit > darkest + kDark * (brightest - darkest);
+  return bit && *bit > darkest + kSameGrey * (brightest - darkest);
 }
 
 bool is_as_white(const std::optional<double>& wall, const std::vector<double>& profile) {
   const auto [darkest, brightest] = std::ranges::minmax(profile);
-  return !wall || *wall > brightest - kDark * (brightest - darkest);
+  return !wall || *wall > brightest - kSameGrey * (brightest - darkest);
 }
 
 double mean_between(const EdgeProfile& profile, double from_rate, double to_rate) {

@@ -20,6 +20,10 @@ inline constexpr double kInnerBits = 1.5;
 /// that the blur of the bits behind it does not change.
 inline constexpr double kThickBorder = 1.5;
 
+/// Grey levels that differ by up to this share of the contrast count as the same: a bit as black as
+/// the border, a wall as white as the quiet zone.
+inline constexpr double kSameGrey = 0.12;
+
 /// Distance of a normal distribution's quartiles, in standard deviations.
 inline constexpr double kQuartileDistance = 1.349;
 

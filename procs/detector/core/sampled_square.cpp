@@ -129,10 +129,6 @@ double SampledSide::half_window_px() const {
   return std::clamp(border_px - kInnerBlurPx, 0.4, 2.0);
 }
 
-bool SampledSquare::is_blurred() const {
-  return std::ranges::any_of(sides, [](const SampledSide& side) { return side.is_blurred(); });
-}
-
 double SampledSquare::corner_margin_px(std::size_t side) const {
   const auto blur_beside = [](const SampledSide& neighbour) {
     return neighbour.is_blurred() ? neighbour.blur_px : 0.0;

@@ -47,8 +47,6 @@ struct SampledSquare {
   std::array<SampledSide, 4> sides{};
   double black{0.0};  ///< grey level of the black border
 
-  bool is_blurred() const;
-
   /// Length [px] to leave out at both ends of a side, where the blur of the neighbouring sides
   /// bends the edge; 0 when neither neighbour is blurred.
   double corner_margin_px(std::size_t side) const;
@@ -64,8 +62,9 @@ SampledSquare sample_square(const cv::Mat& gray, const CameraModel& camera,
                             const std::array<Side, 4>& sides, int modules_per_side,
                             double reach_px);
 
-/// Outward bias [px] that EdgeProfile::edge_px() has on a blurred side, by the model BlurredSide:
-/// white bits behind the border brighten the border and shift the edge.
+/// Outward bias [px] that SampledSide::edge_px() has, by the model BlurredSide: white bits behind a
+/// thin border brighten it and shift the edge, and so does what lies beyond a narrow quiet zone.
+/// nullopt where the model has no edge.
 std::optional<double> blur_bias_px(const cv::Mat& gray, const CameraModel& camera,
                                    const SampledSquare& square, std::size_t side);
 

@@ -62,7 +62,7 @@ TEST(SampledSquare, BordersBlackAndBlurAreMeasured) {
   const SampledSquare square = sampled(blurred_box({6, 9}, kBlack, kBlur_px), {6, 9});
   EXPECT_NEAR(square.black, kBlack, 8.0) << "blur brightens it a little";
   EXPECT_EQ(square.thick_side(), 0U);
-  EXPECT_TRUE(square.is_blurred());
+  EXPECT_TRUE(square.sides[0].is_blurred());
   for (std::size_t side = 0; side < 4; ++side) {
     EXPECT_NEAR(square.sides[side].border_px, side % 2 == 0 ? 9.0 : 6.0, 1e-9);
     EXPECT_NEAR(square.sides[side].blur_px, kBlur_px, 0.1 * kBlur_px);
@@ -70,7 +70,8 @@ TEST(SampledSquare, BordersBlackAndBlurAreMeasured) {
   }
   const SampledSquare sharp = sampled(blurred_box({9, 6}, kWhite, 0.5), {9, 6});
   EXPECT_EQ(sharp.thick_side(), 1U);
-  EXPECT_FALSE(sharp.is_blurred());
+  for (const SampledSide& side : sharp.sides)
+    EXPECT_FALSE(side.is_blurred());
   EXPECT_EQ(sharp.corner_margin_px(0), 0.0);
 }
 
