@@ -186,11 +186,11 @@ std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camer
                  side.side.length_px(), config.min_points);
     if (!line || line->residual_px > config.max_residual_px) return std::nullopt;
     lines[k] = *line;
-    const auto bias_px = blur_bias_px(gray, camera, square, k);
-    if (!bias_px) return std::nullopt;
-    lines[k].at_start_px -= *bias_px;
+    // Where the model has no edge, the border is so thin that its sigma covers the bias.
+    const double bias_px = blur_bias_px(gray, camera, square, k).value_or(0.0);
+    lines[k].at_start_px -= bias_px;
     double sigma_px =
-        std::hypot(common_sigma_px(side.border_px, config), kBiasSigmaShare * *bias_px);
+        std::hypot(common_sigma_px(side.border_px, config), kBiasSigmaShare * bias_px);
     if (side.is_blurred()) sigma_px = std::hypot(sigma_px, kBlurSigmaShare * side.blur_px);
     lines[k].covariance_at_corners.array() += sigma_px * sigma_px;
   }
