@@ -145,6 +145,12 @@ Eigen::Vector2d intersection(const Side& a, const Side& b) {
 struct FittedQuad {
   Corners corners{};
   Eigen::Matrix<double, 8, 8> covariance{};
+
+  /// False where neighbouring sides are parallel.
+  bool is_finite() const {
+    return covariance.allFinite() &&
+           std::ranges::all_of(corners, [](const auto& corner) { return corner.allFinite(); });
+  }
 };
 
 FittedQuad intersect(const Sides& sides, const std::array<EdgeLine, 4>& lines) {
@@ -194,16 +200,15 @@ std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camer
     if (side.is_blurred()) sigma_px = std::hypot(sigma_px, kBlurSigmaShare * side.blur_px);
     lines[k].covariance_at_corners.array() += sigma_px * sigma_px;
   }
-  FittedQuad quad = intersect(sides_of(corners), lines);
+  const FittedQuad quad = intersect(sides_of(corners), lines);
+  if (!quad.is_finite()) return std::nullopt;
   return quad;
 }
 
 double largest_move_px(const Corners& from, const Corners& to) {
   double largest = 0.0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double moved_px = (to[k] - from[k]).norm();
-    if (!(moved_px <= largest)) largest = moved_px;  // also when it is not a number
-  }
+  for (std::size_t k = 0; k < 4; ++k)
+    largest = std::max(largest, (to[k] - from[k]).norm());
   return largest;
 }
 

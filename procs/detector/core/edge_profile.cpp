@@ -16,9 +16,9 @@ constexpr double kMaxCornerMarginRate = 0.2;
 // the edge.
 constexpr double kWhiteAt = 0.8;
 constexpr double kWhiteHalfWidth = 0.2;
-constexpr double kLeastWhitePx = 1.2;
 constexpr double kBlackAt = 0.5 * kThickBorder;
 constexpr double kBlackHalfWidth = 0.15;
+constexpr double kLeastWhitePx = 1.2;  // nearer to the edge its blur darkens the white
 
 /// Bilinear; nullopt outside the image.
 std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& raw_px) {
@@ -35,16 +35,6 @@ std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& 
   const auto* lower = gray.ptr<std::uint8_t>(v + 1) + u;
   return (1 - down) * ((1 - right) * upper[0] + right * upper[1]) +
          down * ((1 - right) * lower[0] + right * lower[1]);
-}
-
-bool is_white(const std::optional<double>& bit, const std::vector<double>& profile) {
-  const auto [darkest, brightest] = std::ranges::minmax(profile);
-  return bit && *bit > darkest + kSameGrey * (brightest - darkest);
-}
-
-bool is_as_white(const std::optional<double>& wall, const std::vector<double>& profile) {
-  const auto [darkest, brightest] = std::ranges::minmax(profile);
-  return !wall || *wall > brightest - kSameGrey * (brightest - darkest);
 }
 
 double mean_between(const EdgeProfile& profile, double from_rate, double to_rate) {
@@ -64,14 +54,13 @@ double mean_between(const EdgeProfile& profile, double from_rate, double to_rate
 /// quiet zone that is not wider than the border.
 void read_levels(EdgeProfile& profile, double border_px) {
   const double middle = 0.5 * border_px / profile.reach_px;
-  const double narrow_at =
-      std::clamp(middle, std::min(kWhiteAt, kLeastWhitePx / profile.reach_px), kWhiteAt);
-  const double white_at = profile.is_white_beyond ? kWhiteAt : narrow_at;
-  const double white_half_width = std::max(0.0, kWhiteHalfWidth - (kWhiteAt - white_at));
-  profile.white = mean_between(profile, white_at - white_half_width, white_at + white_half_width);
-  const double at = profile.is_white_behind ? std::min(middle, kBlackAt) : kBlackAt;
-  const double half_width = std::max(0.0, kBlackHalfWidth - (kBlackAt - at));
-  profile.black = mean_between(profile, -at - half_width, -at + half_width);
+  const double least = std::min(kWhiteAt, kLeastWhitePx / profile.reach_px);
+  const double white_at = profile.is_white_beyond ? kWhiteAt : std::clamp(middle, least, kWhiteAt);
+  const double black_at = profile.is_white_behind ? std::min(middle, kBlackAt) : kBlackAt;
+  const double white_half = std::max(0.0, kWhiteHalfWidth - (kWhiteAt - white_at));
+  const double black_half = std::max(0.0, kBlackHalfWidth - (kBlackAt - black_at));
+  profile.white = mean_between(profile, white_at - white_half, white_at + white_half);
+  profile.black = mean_between(profile, -black_at - black_half, -black_at + black_half);
 }
 
 double EdgeProfile::step_px() const {
@@ -143,8 +132,12 @@ std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel&
       return brightness_at(gray,
                            camera.raw_from_ideal(place_px + modules * border_px * side.outward()));
     };
-    profile.is_white_behind = is_white(brightness_out(-kInnerBits), profile.brightness);
-    profile.is_white_beyond = is_as_white(brightness_out(kInnerBits), profile.brightness);
+    const auto bit = brightness_out(-kInnerBits);
+    const auto wall = brightness_out(kInnerBits);
+    const auto [darkest, brightest] = std::ranges::minmax(profile.brightness);
+    const double same = kSameGrey * (brightest - darkest);
+    profile.is_white_behind = bit && *bit > darkest + same;
+    profile.is_white_beyond = !wall || *wall > brightest - same;
     read_levels(profile, border_px);
     profiles.push_back(std::move(profile));
   }

@@ -10,10 +10,8 @@
 namespace waymark {
 namespace {
 
-// Of a blur [px] above the first, with a border thicker than the second, the neighbouring sides'
-// corners are kept away.
-constexpr double kBlurredPx = 0.95;
-constexpr double kMinBorderPx = 2.0;
+constexpr double kBlurredPx = 0.95;   // a side with more blur bends the ends of its neighbours
+constexpr double kMinBorderPx = 2.0;  // of a thinner border no blur can be measured
 constexpr double kCornerBlurs = 3.0;  // a corner bends the edge over so many sigmas of the blur
 constexpr double kHalfWhite = 0.5;    // assumed share of white bits; has little effect here
 constexpr std::size_t kMinLevels = 4;
@@ -85,13 +83,15 @@ double blur_of(const SampledSide& side, double black) {
   return blurs.empty() ? 0.0 : upper_median(std::move(blurs));
 }
 
-/// Mean white level of a side's profiles near one of its ends.
-std::optional<double> white_near_end(const SampledSide& side, bool at_start) {
+/// Mean white level of the profiles that are at most so far from the start and from the end of a
+/// side, as shares of its length.
+std::optional<double> mean_white(const SampledSide& side, double from_start = 1.0,
+                                 double from_end = 1.0) {
   double sum = 0.0;
   int count = 0;
   for (const EdgeProfile& profile : side.profiles) {
     const double share = profile.along_px / side.side.length_px();
-    if ((at_start ? share : 1.0 - share) > kNearEnd) continue;
+    if (share > from_start || 1.0 - share > from_end) continue;
     sum += profile.white;
     ++count;
   }
@@ -105,17 +105,10 @@ std::optional<double> white_beside(const SampledSquare& square, std::size_t side
   const SampledSide& after = square.sides[(side + 1) % 4];
   if (std::min(before.border_px, after.border_px) < kMuchThicker * square.sides[side].border_px)
     return std::nullopt;
-  const auto white_before = white_near_end(before, false);
-  const auto white_after = white_near_end(after, true);
+  const auto white_before = mean_white(before, 1.0, kNearEnd);
+  const auto white_after = mean_white(after, kNearEnd);
   if (!white_before || !white_after) return std::nullopt;
   return 0.5 * (*white_before + *white_after);
-}
-
-double mean_white(const std::vector<EdgeProfile>& profiles) {
-  double sum = 0.0;
-  for (const EdgeProfile& profile : profiles)
-    sum += profile.white;
-  return sum / static_cast<double>(profiles.size());
 }
 
 }  // namespace
@@ -164,15 +157,15 @@ SampledSquare sample_square(const cv::Mat& gray, const CameraModel& camera,
 std::optional<double> blur_bias_px(const cv::Mat& gray, const CameraModel& camera,
                                    const SampledSquare& square, std::size_t side) {
   const SampledSide& sampled = square.sides[side];
-  if (sampled.profiles.empty()) return std::nullopt;
   const SampledSide& thick = square.sides[square.thick_side()];
-  const double thick_white = mean_white(thick.profiles.empty() ? sampled.profiles : thick.profiles);
+  const auto white_level = mean_white(thick.profiles.empty() ? sampled : thick);
+  if (!white_level) return std::nullopt;
   // Share of white in the row of modules whose centres are that far inside.
   const auto white_share = [&](double modules, double unknown) {
-    const auto mean = mean_brightness_inside(
+    const auto level = mean_brightness_inside(
         gray, camera, sampled.side, modules * sampled.border_px, square.corner_margin_px(side));
-    if (!mean) return unknown;
-    return std::clamp((*mean - square.black) / (thick_white - square.black), 0.0, 1.0);
+    if (!level) return unknown;
+    return std::clamp((*level - square.black) / (*white_level - square.black), 0.0, 1.0);
   };
   // Where the border is thin, the bits behind it change the blur that is measured.
   const double own_blur_px = sampled.border_px > kMinBorderPx ? sampled.blur_px : 0.0;
@@ -182,9 +175,9 @@ std::optional<double> blur_bias_px(const cv::Mat& gray, const CameraModel& camer
   const EdgeProfile profile = model.profile(sampled.reach_px);
   const BlurredSide of_thick{std::max(kSharpPx, thick.blur_px), thick.border_px,
                              is_thin_everywhere(square) ? 0.0 : kHalfWhite, model.outer_white};
-  const EdgeProfile levels = of_thick.profile(thick.reach_px);
-  const double white = sampled.white_beside ? levels.white : profile.white;
-  return profile.edge_px({levels.black, white}, sampled.half_window_px());
+  const EdgeProfile thick_profile = of_thick.profile(thick.reach_px);
+  const double white = sampled.white_beside ? thick_profile.white : profile.white;
+  return profile.edge_px({thick_profile.black, white}, sampled.half_window_px());
 }
 
 }  // namespace waymark
