@@ -18,8 +18,9 @@ constexpr DeviationLimits kFocal{0.01, 0.05};
 constexpr DeviationLimits kSize{0.01, 0.03};
 constexpr DeviationLimits kYaw_rad{0.0087, 0.035};  // 0.5 and 2 degrees
 constexpr DeviationLimits kLate_s{0.01, 0.05};
-// Corners are refined within three pixels of the edge (RefinementConfig::reach_px). A blur whose
-// sigma is half of that reach fills it; one whose sigma is the whole reach exceeds it.
+// The modules of a marker that is just large enough to be found have three to four pixels: a blur
+// whose sigma is half of that hides them, and one with twice that sigma those of a marker half as
+// far.
 constexpr DeviationLimits kBlur_px{1.5, 3.0};
 constexpr DeviationLimits kUnreadable{0.01, 0.1};  // share of the frames
 constexpr std::size_t kMinMarkers = 20;

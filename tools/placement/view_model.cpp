@@ -28,8 +28,8 @@ constexpr std::array kReadShares{ReadShare{0.75, 0.0}, ReadShare{0.95, 0.45}, Re
                                  ReadShare{1.8, 0.86}, ReadShare{2.5, 0.92},  ReadShare{3.5, 1.0}};
 
 constexpr double kScatter_px = 0.02;  // sigma of edge points about their side in those frames
-constexpr double kSharedNoise = 2.2;  // correlation of neighbouring edge points, as in the detector
-constexpr double kThinnestBorder_px = 1.0;
+constexpr double kSharedNoise = 2.0;  // correlation of neighbouring edge points, as in the detector
+constexpr double kFewestPoints = 4.0;
 constexpr double kImageMargin_px = 3.0;  // CandidateConfig::border_distance_px
 constexpr double kNearest_m = 0.05;      // in front of the camera
 constexpr double kOnItsWall_m = 0.15;  // beams ending this close to the marker's plane hit its wall
@@ -59,20 +59,17 @@ double mean_side_px(const SeenCorners& seen, std::size_t side) {
 }
 
 /// Covariance of the perpendicular offsets of a side's two ends [px^2]: of the line through its
-/// edge points, plus the common error by blur, with RefinementConfig's values.
-Eigen::Matrix2d end_covariance(double length_px, double border_px) {
-  const RefinementConfig refinement;
-  const double points = std::max<double>(refinement.min_points, length_px - 2.0 * border_px);
-  const double variance = kSharedNoise * kScatter_px * kScatter_px / points;
-  const double thickness = std::max(kThinnestBorder_px, border_px);
-  const double common_px = std::hypot(refinement.side_sigma_px,
-                                      refinement.thin_border_sigma_px / std::pow(thickness, 4));
+/// edge points, plus what all of them share.
+Eigen::Matrix2d end_covariance(double length_px) {
+  const double variance =
+      kSharedNoise * kScatter_px * kScatter_px / std::max(kFewestPoints, length_px);
   Eigen::Matrix2d covariance;
   covariance << 4.0, -2.0, -2.0, 4.0;  // mean, and slope about it, at both ends
+  const double common_px = RefinementConfig{}.corner_sigma_px;
   return variance * covariance + Eigen::Matrix2d::Constant(common_px * common_px);
 }
 
-Matrix8 corner_covariance(const SeenCorners& seen, int modules_per_side) {
+Matrix8 corner_covariance(const SeenCorners& seen) {
   const auto outward = [&](std::size_t side) {
     const Eigen::Vector2d along = (seen.px[(side + 1) % 4] - seen.px[side]).normalized();
     return Eigen::Vector2d{along.y(), -along.x()};
@@ -87,8 +84,7 @@ Matrix8 corner_covariance(const SeenCorners& seen, int modules_per_side) {
     const auto at = static_cast<Eigen::Index>(2 * k);
     by_sides.block<2, 1>(at, static_cast<Eigen::Index>(2 * before + 1)) = corner_by_shift.col(0);
     by_sides.block<2, 1>(at, at) = corner_by_shift.col(1);
-    const double border_px = mean_side_px(seen, (k + 1) % 4) / modules_per_side;
-    of_sides.block<2, 2>(at, at) = end_covariance(side_px(seen, k), border_px);
+    of_sides.block<2, 2>(at, at) = end_covariance(side_px(seen, k));
   }
   return by_sides * of_sides * by_sides.transpose();
 }
@@ -172,7 +168,7 @@ std::optional<MarkerView> ViewModel::view(const Se2& base_from_marker,
   result.read_share = read_share_of(width_px / modules_per_side_);
   if (result.read_share <= 0.0) return std::nullopt;
 
-  const Eigen::LLT<Matrix8> root{corner_covariance(seen, modules_per_side_)};
+  const Eigen::LLT<Matrix8> root{corner_covariance(seen)};
   const Matrix86 whitened = root.matrixL().solve(seen.jacobian);
   const Matrix6 in_camera = (whitened.transpose() * whitened).inverse();
   Matrix6 turn = Matrix6::Zero();

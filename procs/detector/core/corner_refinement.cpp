@@ -2,207 +2,94 @@
 #include "detector/core/corner_refinement.hpp"
 
 #include "common/geometry/median.hpp"
-#include "detector/core/sampled_square.hpp"
+#include "common/random/random.hpp"
+#include "detector/core/pattern_image.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace waymark {
 namespace {
 
-// The first pass starts from sides about half a pixel off the edge, the second from fitted ones;
-// blurred images and small markers need more.
-constexpr int kMinPasses = 2;
-constexpr int kMaxPasses = 6;
-constexpr double kConvergedPx = 0.1;  // a pass that moves every corner by less is the last one
-// Neighbouring profiles share pixels, so that N of them carry the information of N / 2.2
-// independent ones (measured on rendered markers: with 2.2, squared errors agree with the
-// covariance).
-constexpr double kSharedNoise = 2.2;
-constexpr double kOutlierSigmas = 2.5;
-// Lower bound of the residuals: smaller ones are only rounding of grey levels.
-constexpr double kSmallestResidualPx = 0.01;
-// Standard deviation of the correction for blur: root sum of squares of these shares of the bias
-// and of the blur.
-constexpr double kBiasSigmaShare = 0.5;
-constexpr double kBlurSigmaShare = 0.02;
+using Vector = PatternView::Vector;
+using Matrix = Eigen::Matrix<double, PatternView::kSize, PatternView::kSize>;
 
-using Sides = std::array<Side, 4>;
+// Pixels that count: so near a border between black and white, so far out into the quiet zone.
+constexpr double kNearBorderPx = 4.0;
+constexpr double kQuietZoneModules = 0.8;
+constexpr std::size_t kMostPixels = 1000;  // more say little more, and cost time
+constexpr std::size_t kLeastPixels = 60;   // three for each entry of PatternView
+constexpr double kMostLookedAt = 40000.0;  // of a larger marker every second pixel, or third ...
 
-/// Outward offset [px] of the fitted edge from a side, `at_start_px + slope * along_px`, with the
-/// covariance [px^2] of its offsets at the side's two corners.
-struct EdgeLine {
-  double at_start_px{0.0};
-  double slope{0.0};
-  double residual_px{0.0};
-  Eigen::Matrix2d covariance_at_corners{Eigen::Matrix2d::Zero()};
+// A pixel is far from the model if it is off by so many standard deviations of the others, and by
+// such a share of the contrast.
+constexpr double kFarSigmas = 3.0;
+constexpr double kFarShare = 0.2;
+constexpr double kLeastSigma = 0.7;  // [grey levels] rounding
+// Neighbouring pixels err together, by what blur and printer do beyond the model and by JPEG, so
+// that N of them carry the information of N / 2 independent ones (measured on rendered markers).
+constexpr double kSharedNoise = 2.0;
+
+// What is assumed of light and blur before the image is seen: mean and standard deviation.
+constexpr double kBlurPx = 0.5;
+constexpr double kBlurSigmaPx = 1.0;
+constexpr double kLightSlopeSigma = 0.1;  // from centre to edge, share of the contrast
+constexpr double kBeyondSigma = 0.5;      // share of the contrast
+// First levels of white and black: of their pixels, edges included, those that are clear.
+constexpr double kPlateau = 0.8;
+constexpr double kFirstBlurPx = 1.0;  // wide, so that an edge two pixels off is felt
+constexpr double kLeastBlurPx = 0.1;
+constexpr double kMostBlurPx = 6.0;
+constexpr double kMostBlurStepPx = 0.3;
+
+constexpr int kMostSteps = 20;  // of a stage
+constexpr double kFirstDamping = 1e-3;
+constexpr double kDampingFactor = 10.0;
+constexpr double kMostDamping = 100.0;
+
+/// One descent of several, from rough to fine.
+struct Stage {
+  std::size_t pixels{0};  ///< at most
+  int free_entries{0};    ///< of PatternView::values, the first ones
+  /// Scale of Cauchy's weights, share of the contrast: pixels that are off by much more, by glare
+  /// or dirt, hardly count.
+  double robust_share{0.0};
+  double converged_px{0.0};  ///< a step that would move every corner by less is not taken
 };
 
-struct EdgePoint {
-  double along_px{0.0};
-  double offset_px{0.0};
+constexpr std::array kStages{
+    Stage{200, PatternView::kWhite, 0.4, 0.1}, Stage{200, PatternView::kWhite, 0.1, 0.05},
+    Stage{400, PatternView::kSize, 0.1, 0.05}, Stage{kMostPixels, PatternView::kSize, 0.1, 0.01}};
+
+struct GreyPixel {
+  Eigen::Vector2d ideal_px{};
+  double grey{0.0};
 };
 
-Sides sides_of(const Corners& corners) {
-  return {Side{corners[0], corners[1]}, Side{corners[1], corners[2]}, Side{corners[2], corners[3]},
-          Side{corners[3], corners[0]}};
+double square(double x) {
+  return x * x;
 }
 
-/// @param margin_px  see SampledSquare::corner_margin_px().
-std::vector<EdgePoint> edge_points(const SampledSide& sampled, double black, double margin_px,
-                                   double min_contrast) {
-  std::vector<EdgePoint> points;
-  for (const EdgeProfile& profile : sampled.profiles) {
-    if (sampled.levels(profile, black).white - black < min_contrast) continue;
-    if (std::min(profile.along_px, sampled.side.length_px() - profile.along_px) < margin_px)
-      continue;
-    const auto offset_px = sampled.edge_px(profile, black);
-    if (offset_px) points.push_back({profile.along_px, *offset_px});
-  }
-  return points;
+double quantile(std::vector<double> values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
 }
 
-/// Ordinary least squares in the frame of the side, in which the slope of the edge is tiny.
-EdgeLine fit_once(const std::vector<EdgePoint>& points, double length_px) {
-  const double n = static_cast<double>(points.size());
-  double mean_along = 0.0;
-  double mean_offset = 0.0;
-  for (const EdgePoint& p : points) {
-    mean_along += p.along_px / n;
-    mean_offset += p.offset_px / n;
-  }
-  double spread = 0.0;
-  double joint = 0.0;
-  for (const EdgePoint& p : points) {
-    spread += (p.along_px - mean_along) * (p.along_px - mean_along);
-    joint += (p.along_px - mean_along) * (p.offset_px - mean_offset);
-  }
-  EdgeLine line;
-  line.slope = joint / spread;
-  line.at_start_px = mean_offset - line.slope * mean_along;
-  double squares = 0.0;
-  for (const EdgePoint& p : points) {
-    const double residual = p.offset_px - line.at_start_px - line.slope * p.along_px;
-    squares += residual * residual;
-  }
-  line.residual_px = std::max(kSmallestResidualPx, std::sqrt(squares / (n - 2.0)));
-
-  const Eigen::Vector2d from_mean{-mean_along, length_px - mean_along};
-  const double variance = kSharedNoise * line.residual_px * line.residual_px;
-  line.covariance_at_corners =
-      variance * (Eigen::Matrix2d::Constant(1.0 / n) + from_mean * from_mean.transpose() / spread);
-  return line;
-}
-
-/// Fits up to three times, each time without the outliers of the fit before.
-std::optional<EdgeLine> fit_line(std::vector<EdgePoint> points, double length_px, int min_points) {
-  constexpr int kRounds = 3;
-  if (std::ssize(points) < min_points) return std::nullopt;
-  std::optional<EdgeLine> line;
-  for (int round = 0; round < kRounds; ++round) {
-    line = fit_once(points, length_px);
-    std::vector<double> distances;
-    const auto distance_px = [&line](const EdgePoint& p) {
-      return std::abs(p.offset_px - line->at_start_px - line->slope * p.along_px);
-    };
-    for (const EdgePoint& p : points)
-      distances.push_back(distance_px(p));
-    const double limit_px =
-        kOutlierSigmas *
-        std::max(kSmallestResidualPx, kSigmaOfMad * upper_median(std::move(distances)));
-    const auto is_far = [&](const EdgePoint& p) {
-      return distance_px(p) > limit_px;
-    };
-    const auto far = std::ranges::count_if(points, is_far);
-    if (far == 0 || std::ssize(points) - far < min_points) break;
-    std::erase_if(points, is_far);
-  }
-  return line;
-}
-
-/// Maps outward shifts of two neighbouring sides (the one that ends here, the one that starts here)
-/// to the shift of the corner between them.
-Eigen::Matrix2d corner_from_side_shifts(const Side& ends_here, const Side& starts_here) {
-  Eigen::Matrix2d normals;
-  normals << ends_here.outward().transpose(), starts_here.outward().transpose();
-  return normals.inverse();
-}
-
-Side shifted(const Side& side, const EdgeLine& line) {
-  return {side.start_px + line.at_start_px * side.outward(),
-          side.end_px + (line.at_start_px + line.slope * side.length_px()) * side.outward()};
-}
-
-Eigen::Vector2d intersection(const Side& a, const Side& b) {
-  const Eigen::Vector2d distances{a.outward().dot(a.start_px), b.outward().dot(b.start_px)};
-  return corner_from_side_shifts(a, b) * distances;
-}
-
-struct FittedQuad {
-  Corners corners{};
-  Eigen::Matrix<double, 8, 8> covariance{};
-
-  /// False where neighbouring sides are parallel.
-  bool is_finite() const {
-    return covariance.allFinite() &&
-           std::ranges::all_of(corners, [](const auto& corner) { return corner.allFinite(); });
-  }
-};
-
-FittedQuad intersect(const Sides& sides, const std::array<EdgeLine, 4>& lines) {
-  FittedQuad quad;
-  Eigen::Matrix<double, 8, 8> corners_from_sides = Eigen::Matrix<double, 8, 8>::Zero();
-  Eigen::Matrix<double, 8, 8> side_covariance = Eigen::Matrix<double, 8, 8>::Zero();
-  for (int k = 0; k < 4; ++k) {
-    const int before = (k + 3) % 4;
-    const Side ends_here = shifted(sides[before], lines[before]);
-    const Side starts_here = shifted(sides[k], lines[k]);
-    quad.corners[k] = intersection(ends_here, starts_here);
-    const Eigen::Matrix2d solve = corner_from_side_shifts(ends_here, starts_here);
-    corners_from_sides.block<2, 1>(2 * k, 2 * before + 1) = solve.col(0);
-    corners_from_sides.block<2, 1>(2 * k, 2 * k) = solve.col(1);
-    side_covariance.block<2, 2>(2 * k, 2 * k) = lines[k].covariance_at_corners;
-  }
-  quad.covariance = corners_from_sides * side_covariance * corners_from_sides.transpose();
-  return quad;
-}
-
-/// Standard deviation [px] of the error that all edge points of a side share: from sampling, and
-/// from the bits behind a thin border.
-double common_sigma_px(double border_px, const RefinementConfig& config) {
-  constexpr double kThinnestBorderPx = 1.0;
-  const double thickness = std::max(kThinnestBorderPx, border_px);
-  return std::hypot(config.side_sigma_px, config.thin_border_sigma_px / std::pow(thickness, 4));
-}
-
-std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camera,
-                                   const Corners& corners, int modules_per_side,
-                                   const RefinementConfig& config) {
-  const SampledSquare square =
-      sample_square(gray, camera, sides_of(corners), modules_per_side, config.reach_px);
-  std::array<EdgeLine, 4> lines;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const SampledSide& side = square.sides[k];
-    const auto line =
-        fit_line(edge_points(side, square.black, square.corner_margin_px(k), config.min_contrast),
-                 side.side.length_px(), config.min_points);
-    if (!line || line->residual_px > config.max_residual_px) return std::nullopt;
-    lines[k] = *line;
-    // Where the model has no edge, the border is so thin that its sigma covers the bias.
-    const double bias_px = blur_bias_px(gray, camera, square, k).value_or(0.0);
-    lines[k].at_start_px -= bias_px;
-    double sigma_px =
-        std::hypot(common_sigma_px(side.border_px, config), kBiasSigmaShare * bias_px);
-    if (side.is_blurred()) sigma_px = std::hypot(sigma_px, kBlurSigmaShare * side.blur_px);
-    lines[k].covariance_at_corners.array() += sigma_px * sigma_px;
-  }
-  const FittedQuad quad = intersect(sides_of(corners), lines);
-  if (!quad.is_finite()) return std::nullopt;
-  return quad;
+/// In an order without pattern: the first of them are spread evenly over all.
+void shuffle(std::vector<GreyPixel>& pixels) {
+  Random random{0};
+  for (std::size_t k = pixels.size(); k > 1; --k)
+    std::swap(pixels[k - 1], pixels[random() % k]);
 }
 
 double largest_move_px(const Corners& from, const Corners& to) {
@@ -212,48 +99,285 @@ double largest_move_px(const Corners& from, const Corners& to) {
   return largest;
 }
 
+bool sees_black_and_white(const MarkerPattern& pattern, const PatternImage::Place& place) {
+  const Eigen::Vector2d reach = kNearBorderPx * place.modules_per_px.rowwise().norm();
+  const Eigen::Array2i low = (place.modules - reach).array().floor().cast<int>();
+  const Eigen::Array2i high = (place.modules + reach).array().floor().cast<int>();
+  const bool first = pattern.is_white(low.x(), low.y());
+  for (int row = low.y(); row <= high.y(); ++row) {
+    for (int column = low.x(); column <= high.x(); ++column) {
+      if (pattern.is_white(column, row) != first) return true;
+    }
+  }
+  return false;
+}
+
+/// Chosen in raw pixels, as if the lens did not bend the marker's sides.
+std::vector<GreyPixel> pixels_near_borders(const cv::Mat& gray, const CameraModel& camera,
+                                           const Corners& raw_corners_px,
+                                           const MarkerPattern& pattern) {
+  const PatternImage image{pattern, raw_corners_px};
+  const auto view = image.view_of(raw_corners_px);
+  if (!view) return {};
+  Eigen::Array2d low{gray.cols, gray.rows};
+  Eigen::Array2d high{0.0, 0.0};
+  for (const Eigen::Vector2d& corner_px : raw_corners_px) {
+    low = low.min(corner_px.array());
+    high = high.max(corner_px.array());
+  }
+  // The quiet zone of the near side is at most as wide as the marker is.
+  const Eigen::Array2d margin = (high - low) * (kQuietZoneModules * 2.0 / pattern.modules());
+  low = (low - margin).max(0.0);
+  high = (high + margin).min(Eigen::Array2d{gray.cols - 1.0, gray.rows - 1.0});
+  if (!((high - low).minCoeff() > 0.0)) return {};
+  const int step = static_cast<int>(std::ceil(std::sqrt((high - low).prod() / kMostLookedAt)));
+
+  std::vector<GreyPixel> pixels;
+  for (int v = static_cast<int>(std::ceil(low.y())); v <= high.y(); v += step) {
+    for (int u = static_cast<int>(std::ceil(low.x())); u <= high.x(); u += step) {
+      const auto place = image.place(*view, {u, v});
+      if (!place) continue;
+      const Eigen::Array2d outside =
+          (-place->modules).cwiseMax(place->modules - Eigen::Vector2d::Constant(pattern.modules()));
+      if (outside.maxCoeff() > kQuietZoneModules) continue;
+      if (sees_black_and_white(pattern, *place))
+        pixels.push_back({{u, v}, static_cast<double>(gray.at<std::uint8_t>(v, u))});
+    }
+  }
+  shuffle(pixels);
+  pixels.resize(std::min(pixels.size(), kMostPixels));
+  for (GreyPixel& pixel : pixels)
+    pixel.ideal_px = camera.ideal_from_raw(pixel.ideal_px);
+  std::erase_if(pixels, [](const GreyPixel& pixel) { return !pixel.ideal_px.allFinite(); });
+  return pixels;
+}
+
+/// Residuals of the model at a view, with their derivatives; rows are pixels.
+struct ImageResiduals {
+  Eigen::VectorXd residuals{};
+  Eigen::Matrix<double, Eigen::Dynamic, PatternView::kSize, Eigen::RowMajor> jacobian{};
+};
+
+struct NormalEquations {
+  Matrix information{Matrix::Zero()};
+  Vector gradient{Vector::Zero()};
+};
+
+class PatternFit {
+ public:
+  PatternFit(const MarkerPattern& pattern, const Corners& ideal_corners_px)
+      : pattern_{pattern}, image_{pattern, ideal_corners_px} {}
+
+  /// False where the pixels cannot be fitted at all.
+  bool start(const Corners& ideal_corners_px, const std::vector<GreyPixel>& pixels) {
+    const auto view = image_.view_of(ideal_corners_px);
+    if (!view || pixels.size() < kLeastPixels) return false;
+    view_ = *view;
+    view_.values.segment<2>(PatternView::kBlur).setConstant(kFirstBlurPx);
+    std::vector<double> white;
+    std::vector<double> black;
+    for (const GreyPixel& pixel : pixels) {
+      const auto place = image_.place(view_, pixel.ideal_px);
+      if (!place) continue;
+      const Eigen::Array2i module = place->modules.array().floor().cast<int>();
+      (pattern_.is_white(module.x(), module.y()) ? white : black).push_back(pixel.grey);
+    }
+    if (white.empty() || black.empty()) return false;
+    view_.values[PatternView::kWhite] = quantile(std::move(white), kPlateau);
+    view_.values[PatternView::kBlack] = quantile(std::move(black), 1.0 - kPlateau);
+    view_.values.segment<4>(PatternView::kBeyond).setConstant(view_.values[PatternView::kWhite]);
+    contrast_ = view_.contrast();
+    return contrast_ > 0.0;
+  }
+
+  /// Levenberg-Marquardt. False where the model is no longer finite.
+  bool descend(const std::vector<GreyPixel>& all, const Stage& stage) {
+    const std::span pixels = std::span{all}.first(std::min(all.size(), stage.pixels));
+    robust_scale_ = stage.robust_share * contrast_;
+    double damping = kFirstDamping;
+    ImageResiduals here = linearize(view_, pixels);
+    for (int step = 0; step < kMostSteps && damping < kMostDamping; ++step) {
+      sigma_ = scatter(here.residuals);
+      last_ = normal_equations(view_, here);
+      const PatternView next = moved(last_, stage.free_entries, damping);
+      if (!next.values.allFinite()) return false;
+      const double moved_px = largest_move_px(image_.corners_px(view_), image_.corners_px(next));
+      if (moved_px < stage.converged_px) break;
+      ImageResiduals there = linearize(next, pixels);
+      if (!(cost(next, there) < cost(view_, here))) {
+        damping *= kDampingFactor;
+        continue;
+      }
+      damping /= kDampingFactor;
+      view_ = next;
+      here = std::move(there);
+    }
+    sigma_ = scatter(here.residuals);
+    last_ = normal_equations(view_, here);
+    const double far = std::max(kFarSigmas * sigma_, kFarShare * contrast_);
+    unexplained_share_ = (here.residuals.array().abs() > far).cast<double>().mean();
+    return true;
+  }
+
+  const PatternView& view() const { return view_; }
+
+  /// Standard deviation of the pixels about the model [grey levels].
+  double sigma() const { return sigma_; }
+
+  /// Share of the pixels that are far from the model.
+  double unexplained_share() const { return unexplained_share_; }
+
+  MeasuredCorners corners(double corner_sigma_px) const {
+    MeasuredCorners measured;
+    measured.ideal_px = image_.corners_px(view_);
+    const Matrix covariance = kSharedNoise * last_.information.inverse();
+    const auto jacobian = image_.corner_jacobian(view_);
+    measured.covariance = jacobian * covariance.topLeftCorner<8, 8>() * jacobian.transpose();
+    measured.covariance.diagonal().array() += corner_sigma_px * corner_sigma_px;
+    measured.refined = true;
+    measured.blur_px = view_.values.segment<2>(PatternView::kBlur).maxCoeff();
+    return measured;
+  }
+
+ private:
+  ImageResiduals linearize(const PatternView& view, std::span<const GreyPixel> pixels) const {
+    ImageResiduals result;
+    const auto count = std::ssize(pixels);
+    result.residuals = Eigen::VectorXd::Zero(count);
+    result.jacobian.setZero(count, PatternView::kSize);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const GreyPixel& pixel = pixels[static_cast<std::size_t>(i)];
+      const auto modelled = image_.pixel(view, pixel.ideal_px);
+      if (!modelled) continue;
+      result.residuals[i] = pixel.grey - modelled->grey;
+      result.jacobian.row(i) = modelled->gradient.transpose();
+    }
+    return result;
+  }
+
+  double cost(const PatternView& view, const ImageResiduals& at) const {
+    const Eigen::ArrayXd squares = (at.residuals.array() / robust_scale_).square();
+    const double of_pixels = square(robust_scale_ / sigma_) * (1.0 + squares).log().sum();
+    const Assumptions assumed = assumptions(view);
+    return of_pixels + assumed.residuals.squaredNorm();
+  }
+
+  NormalEquations normal_equations(const PatternView& view, const ImageResiduals& at) const {
+    const Eigen::ArrayXd squares = (at.residuals.array() / robust_scale_).square();
+    const Eigen::ArrayXd weights = 1.0 / ((1.0 + squares) * square(sigma_));
+    const auto weighted = (at.jacobian.array().colwise() * weights.sqrt()).matrix().eval();
+    const Assumptions assumed = assumptions(view);
+    NormalEquations normal;
+    normal.information.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+    normal.information.selfadjointView<Eigen::Lower>().rankUpdate(assumed.jacobian.transpose());
+    normal.information = normal.information.selfadjointView<Eigen::Lower>().toDenseMatrix().eval();
+    normal.gradient = at.jacobian.transpose() * (weights * at.residuals.array()).matrix() +
+                      assumed.jacobian.transpose() * assumed.residuals;
+    return normal;
+  }
+
+  /// Residuals, in standard deviations, of what is assumed before the image is seen.
+  struct Assumptions {
+    Eigen::Matrix<double, 10, 1> residuals{};
+    Eigen::Matrix<double, 10, PatternView::kSize> jacobian{};
+  };
+
+  Assumptions assumptions(const PatternView& view) const {
+    const Vector& p = view.values;
+    Assumptions result;
+    result.jacobian.setZero();
+    Eigen::Index row = 0;
+    const auto add = [&](int entry, double expected, double sigma) {
+      result.residuals[row] = (expected - p[entry]) / sigma;
+      result.jacobian(row, entry) = 1.0 / sigma;
+      return row++;
+    };
+    for (const int i : {0, 1})
+      add(PatternView::kBlur + i, kBlurPx, kBlurSigmaPx);
+    for (const int i : {1, 2}) {
+      add(PatternView::kWhite + i, 0.0, kLightSlopeSigma * contrast_);
+      add(PatternView::kBlack + i, 0.0, kLightSlopeSigma * contrast_);
+    }
+    for (int i = PatternView::kBeyond; i < PatternView::kSize; ++i) {
+      const double sigma = kBeyondSigma * contrast_;
+      result.jacobian(add(i, p[PatternView::kWhite], sigma), PatternView::kWhite) = -1.0 / sigma;
+    }
+    return result;
+  }
+
+  PatternView moved(const NormalEquations& normal, int free_entries, double damping) const {
+    Matrix damped = normal.information;
+    damped.diagonal() *= 1.0 + damping;
+    Vector step = Vector::Zero();
+    step.head(free_entries) = damped.topLeftCorner(free_entries, free_entries)
+                                  .ldlt()
+                                  .solve(normal.gradient.head(free_entries));
+    auto blur_step = step.segment<2>(PatternView::kBlur);
+    blur_step = blur_step.cwiseMax(-kMostBlurStepPx).cwiseMin(kMostBlurStepPx).eval();
+    PatternView next{view_.values + step};
+    auto blur = next.values.segment<2>(PatternView::kBlur);
+    blur = blur.cwiseMax(kLeastBlurPx).cwiseMin(kMostBlurPx).eval();
+    return next;
+  }
+
+  static double scatter(const Eigen::VectorXd& residuals) {
+    std::vector<double> sizes(static_cast<std::size_t>(residuals.size()));
+    std::ranges::transform(residuals, sizes.begin(), [](double r) { return std::abs(r); });
+    return std::max(kLeastSigma, kSigmaOfMad * upper_median(std::move(sizes)));
+  }
+
+  const MarkerPattern& pattern_;
+  PatternImage image_;
+  PatternView view_{};
+  NormalEquations last_{};
+  double contrast_{0.0};  ///< at the start
+  double robust_scale_{1.0};
+  double sigma_{1.0};
+  double unexplained_share_{0.0};
+};
+
 }  // namespace
 
 void RefinementConfig::describe(Fields& fields) {
-  fields.field("reach_px", reach_px, {1.5, 20.0},
-               "how far from a side its edge is looked for; at most the border's thickness");
   fields.field("min_contrast", min_contrast, {1.0, 255.0},
-               "grey levels between border and quiet zone that an edge point needs");
-  fields.field("min_points", min_points, {3, 1000}, "edge points that a side needs");
-  fields.field("max_residual_px", max_residual_px, kPositive,
-               "scatter of the edge points about their line that is still an edge");
+               "grey levels between black and white that a marker needs");
+  fields.field("max_residual", max_residual, kPositive,
+               "scatter of the grey levels about the fitted pattern, as a share of the contrast, "
+               "that is still the marker");
+  fields.field(
+      "max_unexplained_share", max_unexplained_share, kFraction,
+      "share of the pixels that may be far from the fitted pattern, by shadow, glare or dirt");
   fields.field("max_move_px", max_move_px, kPositive,
                "a corner that would move further stays where it was");
-  fields.field("side_sigma_px", side_sigma_px, kNotNegative,
-               "standard deviation of a side's offset beyond what the scatter of its points says");
-  fields.field(
-      "thin_border_sigma_px", thin_border_sigma_px, kNotNegative,
-      "the same, added where the black border looks one pixel thick; falls with the fourth "
-      "power of the thickness");
+  fields.field("corner_sigma_px", corner_sigma_px, kNotNegative,
+               "standard deviation of a corner beyond what the scatter of the grey levels says");
   fields.field("unrefined_sigma_px", unrefined_sigma_px, kPositive,
                "standard deviation of a corner that could not be refined");
 }
 
 MeasuredCorners refine_corners(const cv::Mat& gray, const CameraModel& camera,
-                               const Corners& raw_corners_px, int modules_per_side,
+                               const Corners& raw_corners_px, const MarkerPattern& pattern,
                                const RefinementConfig& config) {
   MeasuredCorners unrefined;
   for (std::size_t k = 0; k < 4; ++k)
     unrefined.ideal_px[k] = camera.ideal_from_raw(raw_corners_px[k]);
   unrefined.covariance *= config.unrefined_sigma_px * config.unrefined_sigma_px;
 
-  MeasuredCorners measured = unrefined;
-  for (int pass = 1; pass <= kMaxPasses; ++pass) {
-    const auto quad = fit_quad(gray, camera, measured.ideal_px, modules_per_side, config);
-    if (!quad) return unrefined;
-    const double moved_px = largest_move_px(measured.ideal_px, quad->corners);
-    measured = {quad->corners, quad->covariance, true};
-    if (!(largest_move_px(unrefined.ideal_px, measured.ideal_px) <= config.max_move_px)) {
-      return unrefined;
-    }
-    if (pass >= kMinPasses && moved_px <= kConvergedPx) break;
+  const auto pixels = pixels_near_borders(gray, camera, raw_corners_px, pattern);
+  PatternFit fit{pattern, unrefined.ideal_px};
+  if (!fit.start(unrefined.ideal_px, pixels)) return unrefined;
+  for (const Stage& stage : kStages) {
+    if (!fit.descend(pixels, stage)) return unrefined;
   }
-  return measured;
+  if (!(fit.view().contrast() >= config.min_contrast) ||
+      !(fit.sigma() <= config.max_residual * fit.view().contrast()) ||
+      fit.unexplained_share() > config.max_unexplained_share) {
+    return unrefined;
+  }
+  MeasuredCorners measured = fit.corners(config.corner_sigma_px);
+  const bool finite = measured.covariance.allFinite() &&
+                      largest_move_px(unrefined.ideal_px, measured.ideal_px) <= config.max_move_px;
+  return finite ? measured : unrefined;
 }
 
 }  // namespace waymark

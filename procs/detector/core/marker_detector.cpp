@@ -73,7 +73,7 @@ MarkerDetector::MarkerDetector(const RobotConfig& robot, const MarkerDetectorCon
       config_{config},
       camera_{robot.camera},
       base_from_camera_{robot.camera.base_from_camera()},
-      modules_per_side_{modules_per_side(dictionary_of(robot.markers))},
+      patterns_{marker_patterns(dictionary_of(robot.markers))},
       finder_{dictionary_of(robot.markers), config.candidates} {}
 
 ImageMarkers MarkerDetector::examine(const cv::Mat& gray) const {
@@ -99,7 +99,8 @@ bool MarkerDetector::is_within_lens(const MarkerCandidate& candidate) const {
 std::optional<MarkerDetection> MarkerDetector::measure(const cv::Mat& gray,
                                                        const MarkerCandidate& candidate) const {
   const MeasuredCorners corners =
-      refine_corners(gray, camera_, candidate.corners_px, modules_per_side_, config_.refinement);
+      refine_corners(gray, camera_, candidate.corners_px,
+                     patterns_[static_cast<std::size_t>(candidate.id)], config_.refinement);
   const auto poses = solve_square(corners, camera_, markers_.size_m);
   if (!poses || poses->best.reprojection_error_px > config_.max_reprojection_px) {
     return std::nullopt;

@@ -69,7 +69,7 @@ class MarkerDetector {
   MarkerDetectorConfig config_;
   CameraModel camera_;
   Eigen::Isometry3d base_from_camera_;
-  int modules_per_side_;
+  std::vector<MarkerPattern> patterns_;  ///< by id
   CandidateFinder finder_;
 };
 

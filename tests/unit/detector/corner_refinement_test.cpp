@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/corner_refinement.hpp"
 
-#include "detector/core/blurred_side.hpp"
+#include "common/markers/marker_dictionary.hpp"
 #include "support/marker_image.hpp"
 
 #include <gtest/gtest.h>
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +19,13 @@ using testing::base_from_upright_marker;
 using testing::ImageLook;
 using testing::render_markers;
 
-constexpr int kModules = 8;
+constexpr int kId = 7;
+
+/// Of the default dictionary.
+const MarkerPattern& pattern() {
+  static const auto patterns = marker_patterns(*find_dictionary(RobotConfig{}.markers.dictionary));
+  return patterns[kId];
+}
 
 struct Scene {
   RobotConfig robot{};
@@ -38,7 +46,7 @@ Scene scene_with(const RobotConfig& robot, const Eigen::Isometry3d& base_from_ma
     const Eigen::Vector3d corner{half_m * directions[k].x(), half_m * directions[k].y(), 0.0};
     scene.true_raw_px[k] = camera.raw_from_ideal(camera.project(scene.camera_from_marker * corner));
   }
-  scene.image = render_markers(robot, {{7, scene.camera_from_marker}}, look, Random{5});
+  scene.image = render_markers(robot, {{kId, scene.camera_from_marker}}, look, Random{5});
   return scene;
 }
 
@@ -53,8 +61,8 @@ Corners pulled_inwards(const Corners& corners, double pull_px) {
 
 Corners refined_error_px(const Scene& scene, double pull_px) {
   const CameraModel camera{scene.robot.camera};
-  const MeasuredCorners corners =
-      refine_corners(scene.image, camera, pulled_inwards(scene.true_raw_px, pull_px), kModules, {});
+  const MeasuredCorners corners = refine_corners(
+      scene.image, camera, pulled_inwards(scene.true_raw_px, pull_px), pattern(), {});
   EXPECT_TRUE(corners.refined);
   Corners error;
   for (std::size_t k = 0; k < 4; ++k)
@@ -133,7 +141,7 @@ TEST(CornerRefinement, AMarkerThatIsSeenAlmostEdgeOnHasFiniteCorners) {
           {.wall = 15.0, .quiet_zone_modules = 1.0});
       const MeasuredCorners corners =
           refine_corners(scene.image, CameraModel{scene.robot.camera},
-                         pulled_inwards(scene.true_raw_px, 0.3), kModules, {});
+                         pulled_inwards(scene.true_raw_px, 0.3), pattern(), {});
       EXPECT_TRUE(corners.covariance.allFinite());
       for (std::size_t k = 0; k < 4; ++k)
         EXPECT_LT((corners.ideal_px[k] - scene.true_raw_px[k]).norm(), 5.5)
@@ -142,8 +150,8 @@ TEST(CornerRefinement, AMarkerThatIsSeenAlmostEdgeOnHasFiniteCorners) {
   }
 }
 
-// White bits behind a thin border brighten it by blur. If that level counted as black, all four
-// sides would move outwards, and the marker would be measured too near.
+// White bits behind a thin border brighten it by blur: all four sides would move outwards, and the
+// marker would be measured too near.
 TEST(CornerRefinement, SmallMarkersHaveNoSizeBias) {
   for (const double ahead_m : {8.0, 8.7, 9.4, 10.1, 10.8}) {  // the border is 2.5 to 3.3 px thick
     for (const double shift_m : {0.0, 0.005, 0.01, 0.015}) {
@@ -158,13 +166,12 @@ TEST(CornerRefinement, SmallMarkersHaveNoSizeBias) {
   }
 }
 
-// Blur mixes the bits behind a thin border into its edge. Without a model of that, the corners of
-// the marker's far side are off by 0.1 px and more, all in the same direction.
+// Blur mixes the bits behind a thin border into its edge, most on the marker's far side.
 TEST(CornerRefinement, CornersOfABlurredCameraAreNearlyUnbiased) {
   for (const double wall_y_m : {1.0, -1.0}) {
     for (const Eigen::Vector2d& error :
          mean_error_in_corridor_px(wall_y_m, {.blur_sigma_px = 1.0}, 3.0))
-      EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.06) << "wall at " << wall_y_m;
+      EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.01) << "wall at " << wall_y_m;
   }
 }
 
@@ -172,33 +179,33 @@ TEST(CornerRefinement, BlurMakesCornersLessCertain) {
   const auto variance_of = [](double blur_sigma_px) {
     const Scene scene =
         scene_with({}, base_from_upright_marker({2.4, 1.0, 0.25}, -0.5 * std::numbers::pi),
-                   {.blur_sigma_px = blur_sigma_px, .noise_sigma = 0.0});
+                   {.blur_sigma_px = blur_sigma_px});
     const CameraModel camera{scene.robot.camera};
-    return refine_corners(scene.image, camera, pulled_inwards(scene.true_raw_px, 0.7), kModules, {})
+    return refine_corners(scene.image, camera, pulled_inwards(scene.true_raw_px, 0.7), pattern(),
+                          {})
         .covariance.trace();
   };
   EXPECT_GT(variance_of(1.0), 1.5 * variance_of(0.3));
 }
 
-TEST(BlurredSide, BlurMovesTheEdgeOnlyIfWhiteBitsLieBehindAThinBorder) {
-  const auto bias_px = [](double border_px, double inner_white) {
-    const BlurredSide side{1.1, border_px, inner_white};
-    const EdgeProfile thick = BlurredSide{1.1, 10.0, 0.5}.profile(3.0);
-    return side.profile(3.0)
-        .edge_px({thick.black, thick.white}, std::clamp(border_px - 1.1, 0.4, 2.0))
-        .value();
-  };
-  EXPECT_LT(std::abs(bias_px(10.0, 1.0)), 0.01);
-  EXPECT_LT(std::abs(bias_px(3.0, 0.0)), 0.01) << "nothing white behind the border";
-  EXPECT_LT(bias_px(3.0, 1.0), -0.05) << "white behind the border: it looks thinner";
-}
-
-TEST(EdgeProfile, MeasuresTheBlurAcrossAnEdge) {
-  for (const double blur_px : {0.65, 1.0, 1.4}) {
-    const EdgeProfile profile = BlurredSide{blur_px, 10.0, 0.5}.profile(5.0);
-    const auto measured_px = profile.blur_px({profile.black, profile.white});
-    ASSERT_TRUE(measured_px);
-    EXPECT_NEAR(*measured_px, blur_px, 0.05 * blur_px);
+TEST(CornerRefinement, TheMeasuredBlurIsTheStandardDeviationOfTheGaussian) {
+  constexpr int kSide_px = 160;
+  const auto dictionary = *find_dictionary(RobotConfig{}.markers.dictionary);
+  cv::Mat marker;
+  cv::aruco::drawMarker(cv::makePtr<cv::aruco::Dictionary>(dictionary), kId, kSide_px, marker);
+  const CameraConfig camera{};
+  for (const double sigma_px : {1.0, 2.0, 3.5}) {
+    cv::Mat image{camera.height_px, camera.width_px, CV_8UC1, cv::Scalar{230}};
+    marker.copyTo(image(cv::Rect{200, 150, kSide_px, kSide_px}));
+    cv::GaussianBlur(image, image, {}, sigma_px);
+    const double right = 200 + kSide_px - 0.5;
+    const double bottom = 150 + kSide_px - 0.5;
+    const MeasuredCorners corners = refine_corners(
+        image, CameraModel{camera},
+        {Eigen::Vector2d{199.5, 149.5}, {right, 149.5}, {right, bottom}, {199.5, bottom}},
+        pattern(), {});
+    EXPECT_TRUE(corners.refined);
+    EXPECT_NEAR(corners.blur_px, sigma_px, 0.12 * sigma_px);
   }
 }
 
@@ -216,28 +223,58 @@ TEST(CornerRefinement, CornersThatWouldMoveFarAreKeptWithALargeCovariance) {
   const Scene scene =
       scene_with({}, base_from_upright_marker({1.5, 0.0, 0.1}, std::numbers::pi), {});
   const CameraModel camera{scene.robot.camera};
-  const Corners far_off = pulled_inwards(scene.true_raw_px, 4.0);
-  const RefinementConfig config{.reach_px = 6.0, .max_move_px = 2.0};
+  const Corners far_off = pulled_inwards(scene.true_raw_px, 2.0);
+  const RefinementConfig config{.max_move_px = 1.0};
 
-  const MeasuredCorners corners = refine_corners(scene.image, camera, far_off, kModules, config);
+  const MeasuredCorners corners = refine_corners(scene.image, camera, far_off, pattern(), config);
 
   EXPECT_FALSE(corners.refined);
   EXPECT_EQ(corners.ideal_px[0], far_off[0]);
   EXPECT_NEAR(corners.covariance(0, 0), 0.64, 1e-12);
 }
 
+TEST(CornerRefinement, AcrossAShadowCornersAreKeptWithALargeCovariance) {
+  const Scene scene =
+      scene_with({}, base_from_upright_marker({1.5, 0.0, 0.2}, std::numbers::pi), {});
+  const double middle = 0.5 * (scene.true_raw_px[0].x() + scene.true_raw_px[1].x());
+  cv::Mat shaded = scene.image.colRange(static_cast<int>(middle), scene.image.cols);
+  shaded *= 0.5;
+  const Corners corners_px = pulled_inwards(scene.true_raw_px, 0.7);
+  const MeasuredCorners corners =
+      refine_corners(scene.image, CameraModel{scene.robot.camera}, corners_px, pattern(), {});
+  EXPECT_FALSE(corners.refined);
+  EXPECT_EQ(corners.ideal_px[2], corners_px[2]);
+}
+
+TEST(CornerRefinement, UnevenLightDoesNotMoveCorners) {
+  Scene scene = scene_with({}, base_from_upright_marker({1.5, 0.0, 0.2}, std::numbers::pi), {});
+  for (int column = 0; column < scene.image.cols; ++column)
+    scene.image.col(column) *= 0.5 + 0.5 * column / scene.image.cols;
+  for (const Eigen::Vector2d& error : refined_error_px(scene, 0.7))
+    EXPECT_LT(error.norm(), 0.03);
+}
+
+TEST(CornerRefinement, AnotherMarkersPatternDoesNotFit) {
+  const Scene scene =
+      scene_with({}, base_from_upright_marker({1.5, 0.0, 0.2}, std::numbers::pi), {});
+  const auto patterns = marker_patterns(*find_dictionary(RobotConfig{}.markers.dictionary));
+  EXPECT_FALSE(refine_corners(scene.image, CameraModel{scene.robot.camera}, scene.true_raw_px,
+                              patterns[kId + 1], {})
+                   .refined);
+}
+
 TEST(CornerRefinement, NothingIsRefinedWhereThereIsNoEdge) {
   const cv::Mat flat(480, 640, CV_8UC1, cv::Scalar{120});
   const Corners corners{Eigen::Vector2d{100, 100}, Eigen::Vector2d{200, 100},
                         Eigen::Vector2d{200, 200}, Eigen::Vector2d{100, 200}};
-  EXPECT_FALSE(refine_corners(flat, CameraModel{CameraConfig{}}, corners, kModules, {}).refined);
+  EXPECT_FALSE(refine_corners(flat, CameraModel{CameraConfig{}}, corners, pattern(), {}).refined);
 }
 
 TEST(CornerRefinement, CornersOutsideTheImageAreHarmless) {
   const cv::Mat flat(480, 640, CV_8UC1, cv::Scalar{120});
   const Corners corners{Eigen::Vector2d{-50, -50}, Eigen::Vector2d{700, -20},
                         Eigen::Vector2d{690, 500}, Eigen::Vector2d{-10, 490}};
-  EXPECT_FALSE(refine_corners(flat, CameraModel{CameraConfig{}}, corners, kModules, {}).refined);
+  EXPECT_FALSE(refine_corners(flat, CameraModel{CameraConfig{}}, corners, pattern(), {}).refined);
 }
 
 }  // namespace

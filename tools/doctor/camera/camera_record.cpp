@@ -5,8 +5,8 @@
 #include "common/markers/marker_dictionary.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
+#include "detector/core/corner_refinement.hpp"
 #include "detector/core/marker_detector.hpp"
-#include "detector/core/sampled_square.hpp"
 #include "detector/image_message.hpp"
 #include "slam/core/scan/marker_sighting.hpp"
 
@@ -21,7 +21,6 @@ namespace {
 constexpr std::int64_t kMaxFrames = 400;
 constexpr std::size_t kMaxMessages = 1200;
 constexpr std::int64_t kDictionaryFrames = 30;
-constexpr double kReach_px = 8.0;  // half length of edge profiles; for blurs of up to half of it
 
 /// The largest dictionary of every family: the smaller ones are its first ids.
 constexpr std::array<std::string_view, 9> kFamilies{
@@ -50,7 +49,7 @@ class CameraReader {
       : robot_{robot},
         detector_{robot, {}},
         described_{*find_dictionary(robot.markers.dictionary), {}},
-        modules_per_side_{modules_per_side(*find_dictionary(robot.markers.dictionary))} {
+        patterns_{marker_patterns(*find_dictionary(robot.markers.dictionary))} {
     for (const std::string_view family : kFamilies)
       finders_.emplace_back(family, CandidateFinder{*find_dictionary(family), {}});
   }
@@ -83,39 +82,23 @@ class CameraReader {
     const auto sighting = sighting_of(robot_, time, marker);
     if (!sighting) return;
     record_.sightings.push_back(*sighting);
-    const double blur_px =
-        blur_of_marker_px(gray, robot_.camera, marker.corners_px, modules_per_side_);
-    if (blur_px < 0.0) return;
-    record_.blurs_px.push_back(blur_px);
-    record_.modules_px.push_back(marker.width_px / modules_per_side_);
+    const MarkerPattern& pattern = patterns_[static_cast<std::size_t>(marker.id)];
+    const MeasuredCorners corners =
+        refine_corners(gray, CameraModel{robot_.camera}, marker.corners_px, pattern, {});
+    if (!corners.refined) return;
+    record_.blurs_px.push_back(corners.blur_px);
+    record_.modules_px.push_back(marker.width_px / pattern.modules());
   }
 
   RobotConfig robot_;
   MarkerDetector detector_;
   CandidateFinder described_;
-  int modules_per_side_;
+  std::vector<MarkerPattern> patterns_;                             ///< by id
   std::vector<std::pair<std::string, CandidateFinder>> finders_{};  ///< by family
   CameraRecord record_{};
 };
 
 }  // namespace
-
-double blur_of_marker_px(const cv::Mat& gray, const CameraConfig& camera,
-                         const std::array<Eigen::Vector2d, 4>& corners_px, int modules_per_side) {
-  const CameraModel model{camera};
-  std::array<Side, 4> sides{};
-  for (std::size_t k = 0; k < 4; ++k) {
-    sides[k] = {model.ideal_from_raw(corners_px[k]), model.ideal_from_raw(corners_px[(k + 1) % 4])};
-  }
-  std::vector<double> blurs_px;
-  for (const SampledSide& side :
-       sample_square(gray, model, sides, modules_per_side, kReach_px).sides) {
-    if (side.blur_px > 0.0) blurs_px.push_back(side.blur_px);
-  }
-  if (blurs_px.empty()) return -1.0;
-  // Motion blurs only two opposite sides, so the largest median counts.
-  return std::ranges::max(blurs_px);
-}
 
 CameraRecord read_markers(const std::filesystem::path& lcm_log, const RobotConfig& robot) {
   const auto is_markers = [](std::string_view channel) {

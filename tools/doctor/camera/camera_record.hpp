@@ -32,7 +32,7 @@ struct CameraRecord {
   std::int64_t num_examined{0};
   std::map<std::string, std::int64_t> problems{};  ///< number of unusable frames by reason
   std::vector<CameraSighting> sightings{};
-  /// Of sightings whose blur could be measured: standard deviation across the marker's sides.
+  /// Of sightings whose blur could be measured: its standard deviation (MeasuredCorners::blur_px).
   std::vector<double> blurs_px{};
   std::vector<double> modules_px{};  ///< side of a module, for the same sightings as blurs_px
   /// Numbers of markers read in some of the frames: with the described dictionary, and with the
@@ -49,10 +49,5 @@ CameraRecord read_markers(const std::filesystem::path& lcm_log, const RobotConfi
 /// Decodes up to 400 frames of CAMERA, evenly spread.
 CameraRecord read_camera(const std::filesystem::path& lcm_log, const RobotConfig& robot,
                          const ShowProgress& progress = {});
-
-/// Standard deviation of the point spread across the sides of a marker [px]: the largest of its
-/// four sides' medians; negative when no side can be measured.
-double blur_of_marker_px(const cv::Mat& gray, const CameraConfig& camera,
-                         const std::array<Eigen::Vector2d, 4>& corners_px, int modules_per_side);
 
 }  // namespace waymark
