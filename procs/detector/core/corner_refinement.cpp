@@ -99,10 +99,15 @@ double largest_move_px(const Corners& from, const Corners& to) {
   return largest;
 }
 
+/// The module at a place; one of those about the black square for all places further out.
+Eigen::Array2i module_at(const MarkerPattern& pattern, const Eigen::Vector2d& modules) {
+  return modules.array().floor().max(-1.0).min(pattern.modules()).cast<int>();
+}
+
 bool sees_black_and_white(const MarkerPattern& pattern, const PatternImage::Place& place) {
   const Eigen::Vector2d reach = kNearBorderPx * place.modules_per_px.rowwise().norm();
-  const Eigen::Array2i low = (place.modules - reach).array().floor().cast<int>();
-  const Eigen::Array2i high = (place.modules + reach).array().floor().cast<int>();
+  const Eigen::Array2i low = module_at(pattern, place.modules - reach);
+  const Eigen::Array2i high = module_at(pattern, place.modules + reach);
   const bool first = pattern.is_white(low.x(), low.y());
   for (int row = low.y(); row <= high.y(); ++row) {
     for (int column = low.x(); column <= high.x(); ++column) {
@@ -179,7 +184,7 @@ class PatternFit {
     for (const GreyPixel& pixel : pixels) {
       const auto place = image_.place(view_, pixel.ideal_px);
       if (!place) continue;
-      const Eigen::Array2i module = place->modules.array().floor().cast<int>();
+      const Eigen::Array2i module = module_at(pattern_, place->modules);
       (pattern_.is_white(module.x(), module.y()) ? white : black).push_back(pixel.grey);
     }
     if (white.empty() || black.empty()) return false;

@@ -206,8 +206,10 @@ std::optional<PatternImage::Place> PatternImage::place(const PatternView& view,
   const Eigen::Vector2d in_plane = inverse * Eigen::Vector2d{unit.x() - h[2], unit.y() - h[5]};
   const double depth = depth_at(view, in_plane);
   if (!(depth > kLeastDepth)) return std::nullopt;
-  return Place{half_modules_ * (in_plane + Eigen::Vector2d::Ones()),
-               half_modules_ / unit_px_ * depth * inverse};
+  const Place place{half_modules_ * (in_plane + Eigen::Vector2d::Ones()),
+                    half_modules_ / unit_px_ * depth * inverse};
+  if (!place.modules.allFinite() || !place.modules_per_px.allFinite()) return std::nullopt;
+  return place;
 }
 
 std::optional<ModelledPixel> PatternImage::pixel(const PatternView& view,

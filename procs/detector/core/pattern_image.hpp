@@ -51,12 +51,12 @@ class PatternImage {
   /// Derivative of the corners (u0 v0 u1 v1 ..) by the homography [px].
   Eigen::Matrix<double, 8, 8> corner_jacobian(const PatternView& view) const;
 
-  /// nullopt for a pixel behind the camera.
+  /// nullopt for a pixel behind the camera, or where the view is degenerate.
   std::optional<ModelledPixel> pixel(const PatternView& view,
                                      const Eigen::Vector2d& ideal_px) const;
 
   /// Modules right of and below the black square's top left corner, with the derivative by the
-  /// pixel [modules/px]. nullopt for a pixel behind the camera.
+  /// pixel [modules/px]. nullopt as for pixel().
   struct Place {
     Eigen::Vector2d modules{};
     Eigen::Matrix2d modules_per_px{};
