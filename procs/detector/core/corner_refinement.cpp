@@ -28,6 +28,7 @@ constexpr double kQuietZoneModules = 0.8;
 constexpr std::size_t kMostPixels = 1000;  // more say little more, and cost time
 constexpr std::size_t kLeastPixels = 60;   // three for each entry of PatternView
 constexpr double kMostLookedAt = 40000.0;  // of a larger marker every second pixel, or third ...
+constexpr int kRowShift = 7919;            // prime to every stride
 
 // A pixel is far from the model if it is off by so many standard deviations of the others, and by
 // such a share of the contrast.
@@ -135,11 +136,13 @@ std::vector<GreyPixel> pixels_near_borders(const cv::Mat& gray, const CameraMode
   low = (low - margin).max(0.0);
   high = (high + margin).min(Eigen::Array2d{gray.cols - 1.0, gray.rows - 1.0});
   if (!((high - low).minCoeff() > 0.0)) return {};
-  const int step = static_cast<int>(std::ceil(std::sqrt((high - low).prod() / kMostLookedAt)));
+  const int stride = static_cast<int>(std::ceil((high - low).prod() / kMostLookedAt));
 
   std::vector<GreyPixel> pixels;
-  for (int v = static_cast<int>(std::ceil(low.y())); v <= high.y(); v += step) {
-    for (int u = static_cast<int>(std::ceil(low.x())); u <= high.x(); u += step) {
+  for (int v = static_cast<int>(std::ceil(low.y())); v <= high.y(); ++v) {
+    // Every row begins elsewhere: on a regular grid a side could pass between all columns.
+    const int first_u = static_cast<int>(std::ceil(low.x())) + v * kRowShift % stride;
+    for (int u = first_u; u <= high.x(); u += stride) {
       const auto place = image.place(*view, {u, v});
       if (!place) continue;
       const Eigen::Array2d outside =
