@@ -10,6 +10,7 @@
 #include "common/random/random.hpp"
 #include "detector/core/frame_decoder.hpp"
 #include "detector/core/marker_detector.hpp"
+#include "detector/core/square_pose.hpp"
 #include "detector/detector_config.hpp"
 #include "sim/core/camera/camera.hpp"
 #include "sim/core/camera/renderer.hpp"
@@ -212,10 +213,7 @@ class Bench {
 
   void add_corners(const MarkerDetection& seen, const Eigen::Isometry3d& truth,
                    CornerErrors& errors) const {
-    const double half_m = 0.5 * scenario_.robot.markers.size_m;
-    const std::array<Eigen::Vector3d, 4> corners_m{
-        Eigen::Vector3d{-half_m, half_m, 0.0}, Eigen::Vector3d{half_m, half_m, 0.0},
-        Eigen::Vector3d{half_m, -half_m, 0.0}, Eigen::Vector3d{-half_m, -half_m, 0.0}};
+    const auto corners_m = corners_in_marker(scenario_.robot.markers.size_m);
     ++errors.markers;
     for (std::size_t k = 0; k < 4; ++k) {
       const Eigen::Vector3d corner =

@@ -2,8 +2,9 @@
 #include "detector/core/corner_refinement.hpp"
 
 #include "common/geometry/median.hpp"
-#include "common/random/random.hpp"
+#include "common/geometry/squared.hpp"
 #include "detector/core/pattern_image.hpp"
+#include "detector/core/pattern_pixels.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -22,13 +23,7 @@ namespace {
 using Vector = PatternView::Vector;
 using Matrix = Eigen::Matrix<double, PatternView::kSize, PatternView::kSize>;
 
-// Pixels that count: so near a border between black and white, so far out into the quiet zone.
-constexpr double kNearBorderPx = 4.0;
-constexpr double kQuietZoneModules = 0.8;
-constexpr std::size_t kMostPixels = 1000;  // more say little more, and cost time
-constexpr std::size_t kLeastPixels = 60;   // three for each entry of PatternView
-constexpr double kMostLookedAt = 40000.0;  // of a larger marker every second pixel, or third ...
-constexpr int kRowShift = 7919;            // prime to every stride
+constexpr std::size_t kLeastPixels = 60;  // three for each entry of PatternView
 
 // A pixel is far from the model if it is off by so many standard deviations of the others, and by
 // such a share of the contrast.
@@ -66,18 +61,10 @@ struct Stage {
   double converged_px{0.0};  ///< a step that would move every corner by less is not taken
 };
 
-constexpr std::array kStages{
-    Stage{200, PatternView::kWhite, 0.4, 0.1}, Stage{200, PatternView::kWhite, 0.1, 0.05},
-    Stage{400, PatternView::kSize, 0.1, 0.05}, Stage{kMostPixels, PatternView::kSize, 0.1, 0.01}};
-
-struct GreyPixel {
-  Eigen::Vector2d ideal_px{};
-  double grey{0.0};
-};
-
-double square(double x) {
-  return x * x;
-}
+constexpr std::array kStages{Stage{200, PatternView::kWhite, 0.4, 0.1},
+                             Stage{200, PatternView::kWhite, 0.1, 0.05},
+                             Stage{400, PatternView::kSize, 0.1, 0.05},
+                             Stage{kMostPatternPixels, PatternView::kSize, 0.1, 0.01}};
 
 double quantile(std::vector<double> values, double share) {
   const auto at =
@@ -86,78 +73,11 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// In an order without pattern: the first of them are spread evenly over all.
-void shuffle(std::vector<GreyPixel>& pixels) {
-  Random random{0};
-  for (std::size_t k = pixels.size(); k > 1; --k)
-    std::swap(pixels[k - 1], pixels[random() % k]);
-}
-
 double largest_move_px(const Corners& from, const Corners& to) {
   double largest = 0.0;
   for (std::size_t k = 0; k < 4; ++k)
     largest = std::max(largest, (to[k] - from[k]).norm());
   return largest;
-}
-
-/// The module at a place; one of those about the black square for all places further out.
-Eigen::Array2i module_at(const MarkerPattern& pattern, const Eigen::Vector2d& modules) {
-  return modules.array().floor().max(-1.0).min(pattern.modules()).cast<int>();
-}
-
-bool sees_black_and_white(const MarkerPattern& pattern, const PatternImage::Place& place) {
-  const Eigen::Vector2d reach = kNearBorderPx * place.modules_per_px.rowwise().norm();
-  const Eigen::Array2i low = module_at(pattern, place.modules - reach);
-  const Eigen::Array2i high = module_at(pattern, place.modules + reach);
-  const bool first = pattern.is_white(low.x(), low.y());
-  for (int row = low.y(); row <= high.y(); ++row) {
-    for (int column = low.x(); column <= high.x(); ++column) {
-      if (pattern.is_white(column, row) != first) return true;
-    }
-  }
-  return false;
-}
-
-/// Chosen in raw pixels, as if the lens did not bend the marker's sides.
-std::vector<GreyPixel> pixels_near_borders(const cv::Mat& gray, const CameraModel& camera,
-                                           const Corners& raw_corners_px,
-                                           const MarkerPattern& pattern) {
-  const PatternImage image{pattern, raw_corners_px};
-  const auto view = image.view_of(raw_corners_px);
-  if (!view) return {};
-  Eigen::Array2d low{gray.cols, gray.rows};
-  Eigen::Array2d high{0.0, 0.0};
-  for (const Eigen::Vector2d& corner_px : raw_corners_px) {
-    low = low.min(corner_px.array());
-    high = high.max(corner_px.array());
-  }
-  // The quiet zone of the near side is at most as wide as the marker is.
-  const Eigen::Array2d margin = (high - low) * (kQuietZoneModules * 2.0 / pattern.modules());
-  low = (low - margin).max(0.0);
-  high = (high + margin).min(Eigen::Array2d{gray.cols - 1.0, gray.rows - 1.0});
-  if (!((high - low).minCoeff() > 0.0)) return {};
-  const int stride = static_cast<int>(std::ceil((high - low).prod() / kMostLookedAt));
-
-  std::vector<GreyPixel> pixels;
-  for (int v = static_cast<int>(std::ceil(low.y())); v <= high.y(); ++v) {
-    // Every row begins elsewhere: on a regular grid a side could pass between all columns.
-    const int first_u = static_cast<int>(std::ceil(low.x())) + v * kRowShift % stride;
-    for (int u = first_u; u <= high.x(); u += stride) {
-      const auto place = image.place(*view, {u, v});
-      if (!place) continue;
-      const Eigen::Array2d outside =
-          (-place->modules).cwiseMax(place->modules - Eigen::Vector2d::Constant(pattern.modules()));
-      if (outside.maxCoeff() > kQuietZoneModules) continue;
-      if (sees_black_and_white(pattern, *place))
-        pixels.push_back({{u, v}, static_cast<double>(gray.at<std::uint8_t>(v, u))});
-    }
-  }
-  shuffle(pixels);
-  pixels.resize(std::min(pixels.size(), kMostPixels));
-  for (GreyPixel& pixel : pixels)
-    pixel.ideal_px = camera.ideal_from_raw(pixel.ideal_px);
-  std::erase_if(pixels, [](const GreyPixel& pixel) { return !pixel.ideal_px.allFinite(); });
-  return pixels;
 }
 
 /// Residuals of the model at a view, with their derivatives; rows are pixels.
@@ -187,8 +107,7 @@ class PatternFit {
     for (const GreyPixel& pixel : pixels) {
       const auto place = image_.place(view_, pixel.ideal_px);
       if (!place) continue;
-      const Eigen::Array2i module = module_at(pattern_, place->modules);
-      (pattern_.is_white(module.x(), module.y()) ? white : black).push_back(pixel.grey);
+      (pattern_.is_white_at(place->modules) ? white : black).push_back(pixel.grey);
     }
     if (white.empty() || black.empty()) return false;
     view_.values[PatternView::kWhite] = quantile(std::move(white), kPlateau);
@@ -204,10 +123,9 @@ class PatternFit {
     robust_scale_ = stage.robust_share * contrast_;
     double damping = kFirstDamping;
     ImageResiduals here = linearize(view_, pixels);
+    weigh(here);
     for (int step = 0; step < kMostSteps && damping < kMostDamping; ++step) {
-      sigma_ = scatter(here.residuals);
-      last_ = normal_equations(view_, here);
-      const PatternView next = moved(last_, stage.free_entries, damping);
+      const PatternView next = moved(normal_, stage.free_entries, damping);
       if (!next.values.allFinite()) return false;
       const double moved_px = largest_move_px(image_.corners_px(view_), image_.corners_px(next));
       if (moved_px < stage.converged_px) break;
@@ -219,9 +137,8 @@ class PatternFit {
       damping /= kDampingFactor;
       view_ = next;
       here = std::move(there);
+      weigh(here);
     }
-    sigma_ = scatter(here.residuals);
-    last_ = normal_equations(view_, here);
     const double far = std::max(kFarSigmas * sigma_, kFarShare * contrast_);
     unexplained_share_ = (here.residuals.array().abs() > far).cast<double>().mean();
     return true;
@@ -238,7 +155,7 @@ class PatternFit {
   MeasuredCorners corners(double corner_sigma_px) const {
     MeasuredCorners measured;
     measured.ideal_px = image_.corners_px(view_);
-    const Matrix covariance = kSharedNoise * last_.information.inverse();
+    const Matrix covariance = kSharedNoise * normal_.information.inverse();
     const auto jacobian = image_.corner_jacobian(view_);
     measured.covariance = jacobian * covariance.topLeftCorner<8, 8>() * jacobian.transpose();
     measured.covariance.diagonal().array() += corner_sigma_px * corner_sigma_px;
@@ -263,16 +180,22 @@ class PatternFit {
     return result;
   }
 
+  /// Scatter and normal equations at the present view.
+  void weigh(const ImageResiduals& here) {
+    sigma_ = scatter(here.residuals);
+    normal_ = normal_equations(view_, here);
+  }
+
   double cost(const PatternView& view, const ImageResiduals& at) const {
     const Eigen::ArrayXd squares = (at.residuals.array() / robust_scale_).square();
-    const double of_pixels = square(robust_scale_ / sigma_) * (1.0 + squares).log().sum();
+    const double of_pixels = squared(robust_scale_ / sigma_) * (1.0 + squares).log().sum();
     const Assumptions assumed = assumptions(view);
     return of_pixels + assumed.residuals.squaredNorm();
   }
 
   NormalEquations normal_equations(const PatternView& view, const ImageResiduals& at) const {
     const Eigen::ArrayXd squares = (at.residuals.array() / robust_scale_).square();
-    const Eigen::ArrayXd weights = 1.0 / ((1.0 + squares) * square(sigma_));
+    const Eigen::ArrayXd weights = 1.0 / ((1.0 + squares) * squared(sigma_));
     const auto weighted = (at.jacobian.array().colwise() * weights.sqrt()).matrix().eval();
     const Assumptions assumed = assumptions(view);
     NormalEquations normal;
@@ -337,7 +260,7 @@ class PatternFit {
   const MarkerPattern& pattern_;
   PatternImage image_;
   PatternView view_{};
-  NormalEquations last_{};
+  NormalEquations normal_{};
   double contrast_{0.0};  ///< at the start
   double robust_scale_{1.0};
   double sigma_{1.0};
@@ -383,9 +306,10 @@ MeasuredCorners refine_corners(const cv::Mat& gray, const CameraModel& camera,
     return unrefined;
   }
   MeasuredCorners measured = fit.corners(config.corner_sigma_px);
-  const bool finite = measured.covariance.allFinite() &&
-                      largest_move_px(unrefined.ideal_px, measured.ideal_px) <= config.max_move_px;
-  return finite ? measured : unrefined;
+  const bool is_plausible =
+      measured.covariance.allFinite() &&
+      largest_move_px(unrefined.ideal_px, measured.ideal_px) <= config.max_move_px;
+  return is_plausible ? measured : unrefined;
 }
 
 }  // namespace waymark

@@ -2,6 +2,7 @@
 // The black and white modules of a marker.
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/aruco.hpp>
 #include <opencv2/core.hpp>
 
@@ -23,6 +24,17 @@ class MarkerPattern {
   bool is_white(int column, int row) const {
     if (column < 0 || row < 0 || column >= modules_ || row >= modules_) return true;
     return is_white_[static_cast<std::size_t>(row * modules_ + column)];
+  }
+
+  /// The module at a place, in modules right of and below the black square's top left corner; one
+  /// of those about the black square for all places further out.
+  Eigen::Array2i module_at(const Eigen::Vector2d& modules) const {
+    return modules.array().floor().max(-1.0).min(modules_).cast<int>();
+  }
+
+  bool is_white_at(const Eigen::Vector2d& modules) const {
+    const Eigen::Array2i module = module_at(modules);
+    return is_white(module.x(), module.y());
   }
 
  private:

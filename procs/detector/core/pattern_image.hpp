@@ -40,7 +40,8 @@ struct ModelledPixel {
 /// marker's axes, corners of modules are right to first order in the covariance.
 class PatternImage {
  public:
-  /// @param corners_px of the black square, ideal pixels; they define the units of the image.
+  /// @param pattern     is kept as a reference.
+  /// @param corners_px  of the black square, ideal pixels; they define the units of the image.
   PatternImage(const MarkerPattern& pattern, const Corners& corners_px);
 
   /// The homography that maps the black square to the corners; everything else is 0.

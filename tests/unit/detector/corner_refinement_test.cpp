@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/corner_refinement.hpp"
 
-#include "common/markers/marker_dictionary.hpp"
+#include "marker_truth.hpp"
 #include "support/marker_image.hpp"
 
 #include <gtest/gtest.h>
@@ -17,15 +17,11 @@ namespace {
 
 using testing::base_from_upright_marker;
 using testing::ImageLook;
+using testing::pattern_of;
+using testing::raw_corners_px;
 using testing::render_markers;
 
 constexpr int kId = 7;
-
-/// Of the default dictionary.
-const MarkerPattern& pattern() {
-  static const auto patterns = marker_patterns(*find_dictionary(RobotConfig{}.markers.dictionary));
-  return patterns[kId];
-}
 
 struct Scene {
   RobotConfig robot{};
@@ -38,14 +34,7 @@ Scene scene_with(const RobotConfig& robot, const Eigen::Isometry3d& base_from_ma
                  const ImageLook& look) {
   Scene scene{.robot = robot};
   scene.camera_from_marker = robot.camera.base_from_camera().inverse() * base_from_marker;
-  const CameraModel camera{robot.camera};
-  const double half_m = 0.5 * robot.markers.size_m;
-  const std::array<Eigen::Vector2d, 4> directions{Eigen::Vector2d{-1, 1}, Eigen::Vector2d{1, 1},
-                                                  Eigen::Vector2d{1, -1}, Eigen::Vector2d{-1, -1}};
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Eigen::Vector3d corner{half_m * directions[k].x(), half_m * directions[k].y(), 0.0};
-    scene.true_raw_px[k] = camera.raw_from_ideal(camera.project(scene.camera_from_marker * corner));
-  }
+  scene.true_raw_px = raw_corners_px(robot, scene.camera_from_marker);
   scene.image = render_markers(robot, {{kId, scene.camera_from_marker}}, look, Random{5});
   return scene;
 }
@@ -62,7 +51,7 @@ Corners pulled_inwards(const Corners& corners, double pull_px) {
 Corners refined_error_px(const Scene& scene, double pull_px) {
   const CameraModel camera{scene.robot.camera};
   const MeasuredCorners corners = refine_corners(
-      scene.image, camera, pulled_inwards(scene.true_raw_px, pull_px), pattern(), {});
+      scene.image, camera, pulled_inwards(scene.true_raw_px, pull_px), pattern_of(kId), {});
   EXPECT_TRUE(corners.refined);
   Corners error;
   for (std::size_t k = 0; k < 4; ++k)
@@ -141,7 +130,7 @@ TEST(CornerRefinement, AMarkerThatIsSeenAlmostEdgeOnHasFiniteCorners) {
           {.wall = 15.0, .quiet_zone_modules = 1.0});
       const MeasuredCorners corners =
           refine_corners(scene.image, CameraModel{scene.robot.camera},
-                         pulled_inwards(scene.true_raw_px, 0.3), pattern(), {});
+                         pulled_inwards(scene.true_raw_px, 0.3), pattern_of(kId), {});
       EXPECT_TRUE(corners.covariance.allFinite());
       for (std::size_t k = 0; k < 4; ++k)
         EXPECT_LT((corners.ideal_px[k] - scene.true_raw_px[k]).norm(), 5.5)
@@ -181,8 +170,8 @@ TEST(CornerRefinement, BlurMakesCornersLessCertain) {
         scene_with({}, base_from_upright_marker({2.4, 1.0, 0.25}, -0.5 * std::numbers::pi),
                    {.blur_sigma_px = blur_sigma_px});
     const CameraModel camera{scene.robot.camera};
-    return refine_corners(scene.image, camera, pulled_inwards(scene.true_raw_px, 0.7), pattern(),
-                          {})
+    return refine_corners(scene.image, camera, pulled_inwards(scene.true_raw_px, 0.7),
+                          pattern_of(kId), {})
         .covariance.trace();
   };
   EXPECT_GT(variance_of(1.0), 1.5 * variance_of(0.3));
@@ -203,7 +192,7 @@ TEST(CornerRefinement, TheMeasuredBlurIsTheStandardDeviationOfTheGaussian) {
     const MeasuredCorners corners = refine_corners(
         image, CameraModel{camera},
         {Eigen::Vector2d{199.5, 149.5}, {right, 149.5}, {right, bottom}, {199.5, bottom}},
-        pattern(), {});
+        pattern_of(kId), {});
     EXPECT_TRUE(corners.refined);
     EXPECT_NEAR(corners.blur_px, sigma_px, 0.12 * sigma_px);
   }
@@ -226,7 +215,8 @@ TEST(CornerRefinement, CornersThatWouldMoveFarAreKeptWithALargeCovariance) {
   const Corners far_off = pulled_inwards(scene.true_raw_px, 2.0);
   const RefinementConfig config{.max_move_px = 1.0};
 
-  const MeasuredCorners corners = refine_corners(scene.image, camera, far_off, pattern(), config);
+  const MeasuredCorners corners =
+      refine_corners(scene.image, camera, far_off, pattern_of(kId), config);
 
   EXPECT_FALSE(corners.refined);
   EXPECT_EQ(corners.ideal_px[0], far_off[0]);
@@ -241,7 +231,7 @@ TEST(CornerRefinement, AcrossAShadowCornersAreKeptWithALargeCovariance) {
   shaded *= 0.5;
   const Corners corners_px = pulled_inwards(scene.true_raw_px, 0.7);
   const MeasuredCorners corners =
-      refine_corners(scene.image, CameraModel{scene.robot.camera}, corners_px, pattern(), {});
+      refine_corners(scene.image, CameraModel{scene.robot.camera}, corners_px, pattern_of(kId), {});
   EXPECT_FALSE(corners.refined);
   EXPECT_EQ(corners.ideal_px[2], corners_px[2]);
 }
@@ -257,9 +247,8 @@ TEST(CornerRefinement, UnevenLightDoesNotMoveCorners) {
 TEST(CornerRefinement, AnotherMarkersPatternDoesNotFit) {
   const Scene scene =
       scene_with({}, base_from_upright_marker({1.5, 0.0, 0.2}, std::numbers::pi), {});
-  const auto patterns = marker_patterns(*find_dictionary(RobotConfig{}.markers.dictionary));
   EXPECT_FALSE(refine_corners(scene.image, CameraModel{scene.robot.camera}, scene.true_raw_px,
-                              patterns[kId + 1], {})
+                              pattern_of(kId + 1), {})
                    .refined);
 }
 
@@ -267,14 +256,16 @@ TEST(CornerRefinement, NothingIsRefinedWhereThereIsNoEdge) {
   const cv::Mat flat(480, 640, CV_8UC1, cv::Scalar{120});
   const Corners corners{Eigen::Vector2d{100, 100}, Eigen::Vector2d{200, 100},
                         Eigen::Vector2d{200, 200}, Eigen::Vector2d{100, 200}};
-  EXPECT_FALSE(refine_corners(flat, CameraModel{CameraConfig{}}, corners, pattern(), {}).refined);
+  EXPECT_FALSE(
+      refine_corners(flat, CameraModel{CameraConfig{}}, corners, pattern_of(kId), {}).refined);
 }
 
 TEST(CornerRefinement, CornersOutsideTheImageAreHarmless) {
   const cv::Mat flat(480, 640, CV_8UC1, cv::Scalar{120});
   const Corners corners{Eigen::Vector2d{-50, -50}, Eigen::Vector2d{700, -20},
                         Eigen::Vector2d{690, 500}, Eigen::Vector2d{-10, 490}};
-  EXPECT_FALSE(refine_corners(flat, CameraModel{CameraConfig{}}, corners, pattern(), {}).refined);
+  EXPECT_FALSE(
+      refine_corners(flat, CameraModel{CameraConfig{}}, corners, pattern_of(kId), {}).refined);
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/pattern_image.hpp"
 
-#include "common/markers/marker_dictionary.hpp"
-#include "common/robot/camera_model.hpp"
+#include "marker_truth.hpp"
 #include "support/marker_image.hpp"
 
 #include <gtest/gtest.h>
@@ -15,14 +14,11 @@ namespace {
 
 using testing::base_from_upright_marker;
 using testing::ImageLook;
+using testing::pattern_of;
+using testing::raw_corners_px;
 using testing::render_markers;
 
 constexpr int kId = 11;
-
-const MarkerPattern& pattern() {
-  static const auto patterns = marker_patterns(*find_dictionary(RobotConfig{}.markers.dictionary));
-  return patterns[kId];
-}
 
 struct Sighting {
   RobotConfig robot{};
@@ -36,14 +32,7 @@ Sighting leaning_sighting() {
   seen.robot.camera.roll_rad = 0.15;
   seen.camera_from_marker = seen.robot.camera.base_from_camera().inverse() *
                             base_from_upright_marker({2.4, 0.9, 0.3}, -0.5 * std::numbers::pi);
-  const CameraModel camera{seen.robot.camera};
-  const double half_m = 0.5 * seen.robot.markers.size_m;
-  const std::array<Eigen::Vector2d, 4> directions{Eigen::Vector2d{-1, 1}, Eigen::Vector2d{1, 1},
-                                                  Eigen::Vector2d{1, -1}, Eigen::Vector2d{-1, -1}};
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Eigen::Vector3d corner{half_m * directions[k].x(), half_m * directions[k].y(), 0.0};
-    seen.corners_px[k] = camera.project(seen.camera_from_marker * corner);
-  }
+  seen.corners_px = raw_corners_px(seen.robot, seen.camera_from_marker);
   return seen;
 }
 
@@ -74,7 +63,7 @@ void for_each_pixel(const Corners& corners_px, const Visit& visit) {
 
 TEST(PatternImage, IsWhatRaysThroughLensAndPixelsSee) {
   const Sighting seen = leaning_sighting();
-  const PatternImage image{pattern(), seen.corners_px};
+  const PatternImage image{pattern_of(kId), seen.corners_px};
   for (const double blur_sigma_px : {0.3, 0.7, 1.2}) {
     const ImageLook look{
         .quiet_zone_modules = 1.0, .blur_sigma_px = blur_sigma_px, .noise_sigma = 0.0};
@@ -97,7 +86,7 @@ TEST(PatternImage, IsWhatRaysThroughLensAndPixelsSee) {
 
 TEST(PatternImage, DerivativesMatchDifferences) {
   const Sighting seen = leaning_sighting();
-  const PatternImage image{pattern(), seen.corners_px};
+  const PatternImage image{pattern_of(kId), seen.corners_px};
   PatternView view = view_with(image, seen.corners_px, {.blur_sigma_px = 0.8});
   view.values[PatternView::kBlur + 1] = 0.6;
   view.values.segment<2>(PatternView::kWhite + 1) << 12.0, -7.0;
@@ -130,7 +119,7 @@ TEST(PatternImage, DerivativesMatchDifferences) {
 
 TEST(PatternImage, CornersOfAViewAreThoseItWasMadeOf) {
   const Sighting seen = leaning_sighting();
-  const PatternImage image{pattern(), seen.corners_px};
+  const PatternImage image{pattern_of(kId), seen.corners_px};
   Corners moved = seen.corners_px;
   moved[2] += Eigen::Vector2d{1.5, -2.5};
   const PatternView view = image.view_of(moved).value();
@@ -153,7 +142,7 @@ TEST(PatternImage, CornersOfAViewAreThoseItWasMadeOf) {
 
 TEST(PatternImage, ThereIsNoViewOfCornersInALine) {
   const Sighting seen = leaning_sighting();
-  const PatternImage image{pattern(), seen.corners_px};
+  const PatternImage image{pattern_of(kId), seen.corners_px};
   EXPECT_FALSE(image.view_of({Eigen::Vector2d{10, 10}, Eigen::Vector2d{20, 20},
                               Eigen::Vector2d{30, 30}, Eigen::Vector2d{40, 40}}));
 }
